@@ -80,7 +80,7 @@ with the functions named above, in order of use:
   i_pan' = (-K_t_pan*N_pan*omega_gear_pan - R_pan*i_pan + u_pan)/L_pan
   i_tilt' = (-K_t_tilt*omega_tilt*ratio_tilt - R_tilt*i_tilt + u_tilt)/L_tilt
 
-Operations of the state derivative: 697 as derived, 223 as written, 166 of them at every
+Operations of the state derivative: 697 as derived, 224 as written, 166 of them at every
 call where `prepare` does the others once per parameter set.
 
 Effects:
@@ -101,11 +101,11 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "2b4a100b2254a97b"
+MODEL_HASH = "2273027e21174945"
 NAME = "full"
 TITLE = "Both axes of the thesis, all drives"
 # How many numbers `prepare` writes.
-PREPARED = 16
+PREPARED = 19
 AXES = ("pan", "tilt")
 STATE_NAMES = (
     "theta_pan", "theta_tilt", "omega_pan", "omega_tilt", "theta_gear_pan", "omega_gear_pan",
@@ -188,99 +188,27 @@ PARAMETERS = (
 )
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def mode_derivative(t, x, u, p, m, dx):
-    """Write the time derivative of the state into dx in the modes m.
-
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
-    see MODE_NAMES; dx [8] in STATE_UNITS per s.
-    """
-    theta_pan = x[0]
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    theta_gear_pan = x[4]
-    omega_gear_pan = x[5]
-    i_pan = x[6]
-    i_tilt = x[7]
-    u_pan = u[0]
-    u_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    b_pan = p[11]
-    b_tilt = p[12]
-    F_c_pan = p[13]
-    F_s_pan = p[14]
-    v_s_pan = p[15]
-    F_v_pan = p[16]
-    a_F_c_pan = p[17]
-    a_F_s_pan = p[18]
-    a_v_s_pan = p[19]
-    a_F_v_pan = p[20]
-    gap_pan = p[21]
-    k_shaft_pan = p[22]
-    d_shaft_pan = p[23]
-    L_pan = p[24]
-    R_pan = p[25]
-    K_t_pan = p[26]
-    J_motor_pan = p[27]
-    N_pan = p[28]
-    L_tilt = p[29]
-    R_tilt = p[30]
-    K_t_tilt = p[31]
-    J_motor_tilt = p[32]
-    b_motor_tilt = p[33]
-    N_tilt = p[34]
-    lead_tilt = p[35]
-    d_screw_tilt = p[36]
-    f_screw_tilt = p[37]
-    l_ground_tilt = p[38]
-    l_min_tilt = p[39]
-    r_arm_tilt = p[40]
-    s_start_tilt = p[41]
-    gravity = p[43]
-    slide_pan = m[0]
-    slide_tilt = m[1]
-    side_pan = m[2]
-    active_pan = m[3]
-    dx[0] = omega_pan
-    dx[1] = omega_tilt
-    cos_tilt = math.cos(theta_tilt)
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def constants(p):
+    """Return what depends on the parameters alone."""
+    J_pan, J_x_tilt, J_y_tilt, J_z_tilt, m_payload, J_x_payload = p[0], p[1], p[2], p[3], p[4], p[5]
+    J_y_payload, J_z_payload, c_x_payload, c_y_payload, c_z_payload = p[6], p[7], p[8], p[9], p[10]
+    gap_pan, K_t_pan, J_motor_pan, N_pan, lead_tilt = p[21], p[26], p[27], p[28], p[35]
+    d_screw_tilt, f_screw_tilt, l_ground_tilt, l_min_tilt = p[36], p[37], p[38], p[39]
+    r_arm_tilt, s_start_tilt, gravity = p[40], p[41], p[43]
     inertia_pan_sin_cos_tilt = 2.0 * c_x_payload * c_z_payload * m_payload
     inertia_pan_sin_sq_tilt_term = (c_z_payload * c_z_payload) * m_payload
     inertia_pan_sin_sq_tilt_term_2 = (c_x_payload * c_x_payload) * m_payload
     inertia_pan_sin_sq_tilt = (J_x_payload + J_x_tilt - J_z_payload - J_z_tilt
         + inertia_pan_sin_sq_tilt_term - inertia_pan_sin_sq_tilt_term_2)
-    sin_tilt = math.sin(theta_tilt)
-    inertia_pan_per_sin_tilt = (cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt
-        * sin_tilt)
-    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
     c_y_payload_m_payload = c_y_payload * m_payload
     coupling_cos_tilt = c_y_payload_m_payload * c_z_payload
     coupling_sin_tilt = c_x_payload * c_y_payload_m_payload
     half_gap_pan = 0.5 * gap_pan
-    shaft_torque_pan = (active_pan * (d_shaft_pan * (omega_gear_pan - omega_pan) + k_shaft_pan
-        * (-half_gap_pan * side_pan + theta_gear_pan - theta_pan)))
-    force_pan = (-b_pan * omega_pan - omega_tilt * (coriolis + omega_tilt * (cos_tilt
-        * coupling_sin_tilt + coupling_cos_tilt * sin_tilt)) + shaft_torque_pan)
     inertia_tilt = (J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term
         + inertia_pan_sin_sq_tilt_term_2)
     inertia_pan = (J_pan + J_z_payload + J_z_tilt + (c_y_payload * c_y_payload) * m_payload
         + inertia_pan_sin_sq_tilt_term_2)
-    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
-    mass_pan_inverse = 1.0 / mass_pan
-    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
-    mass_pan_tilt_sq = mass_pan_tilt * mass_pan_tilt
-    load_inertia_tilt = inertia_tilt - mass_pan_inverse * mass_pan_tilt_sq
     lowered_tilt_term = math.pi * d_screw_tilt
     f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
     f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
@@ -293,202 +221,52 @@ def mode_derivative(t, x, u, p, m, dx):
     l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
     linkage_cos_tilt = (l_ground_tilt_sq_plus_r_arm_tilt_sq - ((l_min_tilt + s_start_tilt)
         * (l_min_tilt + s_start_tilt)))
-    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
     linkage_sin_tilt = (math.sqrt(4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt
         * linkage_cos_tilt)))
-    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt = (math.sqrt(-cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq
-        - linkage_sin_tilt_sin_tilt))
-    ratio_tilt_term = math.pi * N_tilt * lead_tilt_inverse / length_tilt
-    ratio_tilt_term_2 = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
-    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
-    lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
-    lost_lowering_tilt = ((1.0 - lowered_tilt) / abs(load_inertia_tilt * lowered_tilt
-        + lost_lowering_tilt_term))
     raised_tilt = (lead_tilt_inverse_lowered_tilt_term * (f_screw_tilt_lowered_tilt_term
         + lead_tilt) / (-f_screw_tilt_lead_tilt + lowered_tilt_term))
-    lost_raising_tilt = ((raised_tilt - 1.0) / (load_inertia_tilt * raised_tilt
-        + lost_lowering_tilt_term))
-    length_tilt_by_theta_tilt = 0.5 * ratio_tilt_term_2 / length_tilt
-    ratio_tilt_by_theta_tilt = (-math.pi * N_tilt * lead_tilt_inverse * length_tilt_by_theta_tilt
-        * ratio_tilt_term_2 / (length_tilt * length_tilt) + ratio_tilt_term
-        * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt))
-    driving_torque_tilt_term = (J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt
-        * ratio_tilt_by_theta_tilt)
     gravity_m_payload = gravity * m_payload
     gravity_cos_tilt = c_x_payload * gravity_m_payload
     gravity_sin_tilt = c_z_payload * gravity_m_payload
-    load_torque_tilt_term = (-b_tilt * omega_tilt + 0.5 * coriolis * omega_pan + cos_tilt
-        * gravity_cos_tilt + gravity_sin_tilt * sin_tilt)
-    omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
-    driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
-    driving_torque_tilt = -driving_torque_tilt_term + driving_torque_tilt_term_2 * ratio_tilt
-    force_pan_mass_pan_tilt = force_pan * mass_pan_tilt
-    load_torque_tilt = -force_pan_mass_pan_tilt * mass_pan_inverse + load_torque_tilt_term
-    carried_tilt = (driving_torque_tilt * load_inertia_tilt - load_torque_tilt
-        * lost_lowering_tilt_term)
-    carried_tilt_slide_tilt = carried_tilt * slide_tilt
-    transmitted_torque_tilt = driving_torque_tilt_term_2 * ratio_tilt
-    force_tilt = (-driving_torque_tilt_term + load_torque_tilt_term - slide_tilt * (0.5
-        * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt) + 0.5
-        * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt))
-        + transmitted_torque_tilt)
-    mass_tilt = inertia_tilt + lost_lowering_tilt_term
-    slide_tilt_sq = slide_tilt * slide_tilt
-    inverse_determinant = 1.0 / (mass_pan * mass_tilt - mass_pan_tilt_sq * slide_tilt_sq)
-    dx[2] = (inverse_determinant * (force_pan * mass_tilt - force_tilt * mass_pan_tilt
-        * slide_tilt_sq))
-    dx[3] = (inverse_determinant * slide_tilt_sq * (-force_pan_mass_pan_tilt * slide_tilt_sq
-        + force_tilt * mass_pan))
-    dx[4] = omega_gear_pan
-    coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
-    stribeck_square_pan = ((omega_gear_pan * omega_gear_pan) / ((v_s_pan * v_s_pan) * ((a_v_s_pan
-        * slide_pan + 1.0) * (a_v_s_pan * slide_pan + 1.0))))
-    viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
-    force_gear_pan = (K_t_pan * N_pan * i_pan - shaft_torque_pan - slide_pan * (coulomb_torque_pan
-        + omega_gear_pan * slide_pan * viscous_coefficient_pan + (F_s_pan * (a_F_s_pan * slide_pan
-        + 1.0) - coulomb_torque_pan) * math.exp(-stribeck_square_pan)))
     mass_gear_pan = J_motor_pan * (N_pan * N_pan)
     inverse_mass_gear_pan = 1.0 / mass_gear_pan
-    dx[5] = force_gear_pan * inverse_mass_gear_pan * (slide_pan * slide_pan)
-    dx[6] = (-K_t_pan * N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
-    dx[7] = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
+    K_t_pan_N_pan = K_t_pan * N_pan
+    forward_tilt_term_3 = -lowered_tilt + raised_tilt
+    return (inertia_pan_sin_cos_tilt, inertia_pan_sin_sq_tilt, coupling_cos_tilt, coupling_sin_tilt,
+        half_gap_pan, inertia_tilt, inertia_pan, lead_tilt_inverse, lowered_tilt,
+        l_ground_tilt_sq_plus_r_arm_tilt_sq, linkage_cos_tilt, linkage_sin_tilt, raised_tilt,
+        gravity_cos_tilt, gravity_sin_tilt, mass_gear_pan, inverse_mass_gear_pan, K_t_pan_N_pan,
+        forward_tilt_term_3)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def prepare(p, c):
-    """Write into c what prepared_derivative takes from the parameters alone.
-
-    p [44] in the units of PARAMETERS; c [16] of prepare.
-    """
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    gap_pan = p[21]
-    J_motor_pan = p[27]
-    N_pan = p[28]
-    lead_tilt = p[35]
-    d_screw_tilt = p[36]
-    f_screw_tilt = p[37]
-    l_ground_tilt = p[38]
-    l_min_tilt = p[39]
-    r_arm_tilt = p[40]
-    s_start_tilt = p[41]
-    gravity = p[43]
-    c[0] = 2.0 * c_x_payload * c_z_payload * m_payload
-    inertia_pan_sin_sq_tilt_term = (c_z_payload * c_z_payload) * m_payload
-    inertia_pan_sin_sq_tilt_term_2 = (c_x_payload * c_x_payload) * m_payload
-    c[1] = (J_x_payload + J_x_tilt - J_z_payload - J_z_tilt + inertia_pan_sin_sq_tilt_term
-        - inertia_pan_sin_sq_tilt_term_2)
-    c_y_payload_m_payload = c_y_payload * m_payload
-    c[2] = c_y_payload_m_payload * c_z_payload
-    c[3] = c_x_payload * c_y_payload_m_payload
-    c[4] = 0.5 * gap_pan
-    c[5] = J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term + inertia_pan_sin_sq_tilt_term_2
-    c[6] = (J_pan + J_z_payload + J_z_tilt + (c_y_payload * c_y_payload) * m_payload
-        + inertia_pan_sin_sq_tilt_term_2)
-    lowered_tilt_term = math.pi * d_screw_tilt
-    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
-    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
-    lead_tilt_inverse = 1.0 / lead_tilt
-    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
-    c[8] = (-lead_tilt_inverse_lowered_tilt_term * (f_screw_tilt_lowered_tilt_term - lead_tilt)
-        / (f_screw_tilt_lead_tilt + lowered_tilt_term))
-    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
-    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
-    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
-    linkage_cos_tilt = (l_ground_tilt_sq_plus_r_arm_tilt_sq - ((l_min_tilt + s_start_tilt)
-        * (l_min_tilt + s_start_tilt)))
-    c[11] = (math.sqrt(4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt
-        * linkage_cos_tilt)))
-    c[12] = (lead_tilt_inverse_lowered_tilt_term * (f_screw_tilt_lowered_tilt_term + lead_tilt)
-        / (-f_screw_tilt_lead_tilt + lowered_tilt_term))
-    gravity_m_payload = gravity * m_payload
-    c[13] = c_x_payload * gravity_m_payload
-    c[14] = c_z_payload * gravity_m_payload
-    mass_gear_pan = J_motor_pan * (N_pan * N_pan)
-    c[15] = 1.0 / mass_gear_pan
-    c[7] = lead_tilt_inverse
-    c[9] = l_ground_tilt_sq_plus_r_arm_tilt_sq
-    c[10] = linkage_cos_tilt
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def prepared_derivative(t, x, u, p, m, c, dx):
-    """Write the time derivative of the state into dx in the modes m, c being prepared.
-
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
-    see MODE_NAMES; c [16] of prepare; dx [8] in STATE_UNITS per s.
-    """
-    theta_pan = x[0]
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    theta_gear_pan = x[4]
-    omega_gear_pan = x[5]
-    i_pan = x[6]
-    i_tilt = x[7]
-    u_pan = u[0]
-    u_tilt = u[1]
-    b_pan = p[11]
-    b_tilt = p[12]
-    F_c_pan = p[13]
-    F_s_pan = p[14]
-    v_s_pan = p[15]
-    F_v_pan = p[16]
-    a_F_c_pan = p[17]
-    a_F_s_pan = p[18]
-    a_v_s_pan = p[19]
-    a_F_v_pan = p[20]
-    k_shaft_pan = p[22]
-    d_shaft_pan = p[23]
-    L_pan = p[24]
-    R_pan = p[25]
-    K_t_pan = p[26]
-    N_pan = p[28]
-    L_tilt = p[29]
-    R_tilt = p[30]
-    K_t_tilt = p[31]
-    J_motor_tilt = p[32]
-    b_motor_tilt = p[33]
-    N_tilt = p[34]
-    slide_pan = m[0]
-    slide_tilt = m[1]
-    side_pan = m[2]
-    active_pan = m[3]
-    inertia_pan_sin_cos_tilt = c[0]
-    inertia_pan_sin_sq_tilt = c[1]
-    coupling_cos_tilt = c[2]
-    coupling_sin_tilt = c[3]
-    half_gap_pan = c[4]
-    inertia_tilt = c[5]
-    inertia_pan = c[6]
-    lead_tilt_inverse = c[7]
-    lowered_tilt = c[8]
-    l_ground_tilt_sq_plus_r_arm_tilt_sq = c[9]
-    linkage_cos_tilt = c[10]
-    linkage_sin_tilt = c[11]
-    raised_tilt = c[12]
-    gravity_cos_tilt = c[13]
-    gravity_sin_tilt = c[14]
-    inverse_mass_gear_pan = c[15]
-    dx[0] = omega_pan
-    dx[1] = omega_tilt
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def mass_and_forces(t, x, u, p, m, c):
+    """Return mass matrix, forces and what else the functions below have in common."""
+    theta_pan, theta_tilt, omega_pan, omega_tilt, theta_gear_pan = x[0], x[1], x[2], x[3], x[4]
+    omega_gear_pan, i_pan, i_tilt = x[5], x[6], x[7]
+    u_pan, u_tilt = u[0], u[1]
+    b_pan, b_tilt, F_c_pan, F_s_pan, v_s_pan, F_v_pan = p[11], p[12], p[13], p[14], p[15], p[16]
+    a_F_c_pan, a_F_s_pan, a_v_s_pan, a_F_v_pan, k_shaft_pan = p[17], p[18], p[19], p[20], p[22]
+    d_shaft_pan, L_pan, R_pan, K_t_pan, N_pan, L_tilt = p[23], p[24], p[25], p[26], p[28], p[29]
+    R_tilt, K_t_tilt, J_motor_tilt, b_motor_tilt, N_tilt = p[30], p[31], p[32], p[33], p[34]
+    slide_pan, slide_tilt, side_pan, active_pan = m[0], m[1], m[2], m[3]
+    inertia_pan_sin_cos_tilt, inertia_pan_sin_sq_tilt, coupling_cos_tilt = c[0], c[1], c[2]
+    coupling_sin_tilt, half_gap_pan, inertia_tilt, inertia_pan = c[3], c[4], c[5], c[6]
+    lead_tilt_inverse, lowered_tilt, l_ground_tilt_sq_plus_r_arm_tilt_sq = c[7], c[8], c[9]
+    linkage_cos_tilt, linkage_sin_tilt, raised_tilt, gravity_cos_tilt = c[10], c[11], c[12], c[13]
+    gravity_sin_tilt, K_t_pan_N_pan = c[14], c[17]
     cos_tilt = math.cos(theta_tilt)
     sin_tilt = math.sin(theta_tilt)
     inertia_pan_per_sin_tilt = (cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt
         * sin_tilt)
     coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
-    shaft_torque_pan = (active_pan * (d_shaft_pan * (omega_gear_pan - omega_pan) + k_shaft_pan
-        * (-half_gap_pan * side_pan + theta_gear_pan - theta_pan)))
+    shaft_torque_pan_term = omega_gear_pan - omega_pan
+    d_shaft_pan_shaft_torque_pan_term = d_shaft_pan * shaft_torque_pan_term
+    shaft_torque_pan_term_2 = -theta_gear_pan + theta_pan
+    shaft_torque_pan_term_3 = -half_gap_pan * side_pan - shaft_torque_pan_term_2
+    k_shaft_pan_shaft_torque_pan_term_3 = k_shaft_pan * shaft_torque_pan_term_3
+    shaft_torque_pan = (active_pan * (d_shaft_pan_shaft_torque_pan_term
+        + k_shaft_pan_shaft_torque_pan_term_3))
     force_pan = (-b_pan * omega_pan - omega_tilt * (coriolis + omega_tilt * (cos_tilt
         * coupling_sin_tilt + coupling_cos_tilt * sin_tilt)) + shaft_torque_pan)
     mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
@@ -503,116 +281,224 @@ def prepared_derivative(t, x, u, p, m, c, dx):
     ratio_tilt_term = math.pi * N_tilt * lead_tilt_inverse / length_tilt
     ratio_tilt_term_2 = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
     ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
-    lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
-    lost_lowering_tilt = ((1.0 - lowered_tilt) / abs(load_inertia_tilt * lowered_tilt
-        + lost_lowering_tilt_term))
-    lost_raising_tilt = ((raised_tilt - 1.0) / (load_inertia_tilt * raised_tilt
-        + lost_lowering_tilt_term))
+    ratio_tilt_sq = ratio_tilt * ratio_tilt
+    J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
+    lost_lowering_tilt = ((1.0 - lowered_tilt) / abs(J_motor_tilt_ratio_tilt_sq + load_inertia_tilt
+        * lowered_tilt))
+    lost_raising_tilt = ((raised_tilt - 1.0) / (J_motor_tilt_ratio_tilt_sq + load_inertia_tilt
+        * raised_tilt))
     length_tilt_by_theta_tilt = 0.5 * ratio_tilt_term_2 / length_tilt
     ratio_tilt_by_theta_tilt = (-math.pi * N_tilt * lead_tilt_inverse * length_tilt_by_theta_tilt
         * ratio_tilt_term_2 / (length_tilt * length_tilt) + ratio_tilt_term
         * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt))
-    driving_torque_tilt_term = (J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt
-        * ratio_tilt_by_theta_tilt)
-    load_torque_tilt_term = (-b_tilt * omega_tilt + 0.5 * coriolis * omega_pan + cos_tilt
-        * gravity_cos_tilt + gravity_sin_tilt * sin_tilt)
+    omega_tilt_sq = omega_tilt * omega_tilt
+    driving_torque_tilt_term = J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
     omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
     driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
     driving_torque_tilt = -driving_torque_tilt_term + driving_torque_tilt_term_2 * ratio_tilt
     force_pan_mass_pan_tilt = force_pan * mass_pan_tilt
+    load_torque_tilt_term = (-b_tilt * omega_tilt + 0.5 * coriolis * omega_pan + cos_tilt
+        * gravity_cos_tilt + gravity_sin_tilt * sin_tilt)
     load_torque_tilt = -force_pan_mass_pan_tilt * mass_pan_inverse + load_torque_tilt_term
-    carried_tilt = (driving_torque_tilt * load_inertia_tilt - load_torque_tilt
-        * lost_lowering_tilt_term)
+    carried_tilt = (-J_motor_tilt_ratio_tilt_sq * load_torque_tilt + driving_torque_tilt
+        * load_inertia_tilt)
     carried_tilt_slide_tilt = carried_tilt * slide_tilt
+    force_tilt_term = (slide_tilt * (0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt
+        + lost_raising_tilt) + 0.5 * (lost_lowering_tilt + lost_raising_tilt)
+        * abs(carried_tilt_slide_tilt)))
     transmitted_torque_tilt = driving_torque_tilt_term_2 * ratio_tilt
-    force_tilt = (-driving_torque_tilt_term + load_torque_tilt_term - slide_tilt * (0.5
-        * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt) + 0.5
-        * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt))
-        + transmitted_torque_tilt)
-    mass_tilt = inertia_tilt + lost_lowering_tilt_term
+    force_tilt_term_2 = -driving_torque_tilt_term + load_torque_tilt_term + transmitted_torque_tilt
+    force_tilt = -force_tilt_term + force_tilt_term_2
+    mass_tilt = J_motor_tilt_ratio_tilt_sq + inertia_tilt
+    coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
+    omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
+    stribeck_square_pan = (omega_gear_pan_sq / ((v_s_pan * v_s_pan) * ((a_v_s_pan * slide_pan + 1.0)
+        * (a_v_s_pan * slide_pan + 1.0))))
+    viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
+    force_gear_pan_term = (slide_pan * (coulomb_torque_pan + omega_gear_pan * slide_pan
+        * viscous_coefficient_pan + (F_s_pan * (a_F_s_pan * slide_pan + 1.0) - coulomb_torque_pan)
+        * math.exp(-stribeck_square_pan)))
+    force_gear_pan = K_t_pan * N_pan * i_pan - force_gear_pan_term - shaft_torque_pan
+    rate_of_i_pan_term = (-K_t_pan_N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
+    rate_of_i_tilt_term = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
+    return (cos_tilt, sin_tilt, shaft_torque_pan_term, d_shaft_pan_shaft_torque_pan_term,
+        shaft_torque_pan_term_2, shaft_torque_pan_term_3, k_shaft_pan_shaft_torque_pan_term_3,
+        shaft_torque_pan, force_pan, mass_pan, mass_pan_tilt, mass_pan_tilt_sq, ratio_tilt_sq,
+        omega_tilt_sq, force_pan_mass_pan_tilt, load_torque_tilt, force_tilt_term,
+        force_tilt_term_2, force_tilt, mass_tilt, omega_gear_pan_sq, force_gear_pan_term,
+        force_gear_pan, rate_of_i_pan_term, rate_of_i_tilt_term)
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def prepare(p, c):
+    """Write into c what prepared_derivative takes from the parameters alone.
+
+    p [44] in the units of PARAMETERS; c [19] of prepare.
+    """
+    values = constants(p)
+    for k in range(PREPARED):
+        c[k] = values[k]
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def prepared_derivative(t, x, u, p, m, c, dx):
+    """Write the time derivative of the state into dx in the modes m, c being prepared.
+
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
+    see MODE_NAMES; c [19] of prepare; dx [8] in STATE_UNITS per s.
+    """
+    forces = mass_and_forces(t, x, u, p, m, c)
+    force_pan, mass_pan, mass_pan_tilt = forces[8], forces[9], forces[10]
+    mass_pan_tilt_sq, force_pan_mass_pan_tilt, force_tilt = forces[11], forces[14], forces[18]
+    mass_tilt, force_gear_pan, rate_of_i_pan_term = forces[19], forces[22], forces[23]
+    rate_of_i_tilt_term = forces[24]
+    omega_pan, omega_tilt, omega_gear_pan = x[2], x[3], x[5]
+    slide_pan, slide_tilt = m[0], m[1]
+    inverse_mass_gear_pan = c[16]
+    dx[0] = omega_pan
+    dx[1] = omega_tilt
     slide_tilt_sq = slide_tilt * slide_tilt
     inverse_determinant = 1.0 / (mass_pan * mass_tilt - mass_pan_tilt_sq * slide_tilt_sq)
-    dx[2] = (inverse_determinant * (force_pan * mass_tilt - force_tilt * mass_pan_tilt
+    accel_pan = (inverse_determinant * (force_pan * mass_tilt - force_tilt * mass_pan_tilt
         * slide_tilt_sq))
+    dx[2] = accel_pan
     dx[3] = (inverse_determinant * slide_tilt_sq * (-force_pan_mass_pan_tilt * slide_tilt_sq
         + force_tilt * mass_pan))
     dx[4] = omega_gear_pan
-    coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
-    stribeck_square_pan = ((omega_gear_pan * omega_gear_pan) / ((v_s_pan * v_s_pan) * ((a_v_s_pan
-        * slide_pan + 1.0) * (a_v_s_pan * slide_pan + 1.0))))
-    viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
-    force_gear_pan = (K_t_pan * N_pan * i_pan - shaft_torque_pan - slide_pan * (coulomb_torque_pan
-        + omega_gear_pan * slide_pan * viscous_coefficient_pan + (F_s_pan * (a_F_s_pan * slide_pan
-        + 1.0) - coulomb_torque_pan) * math.exp(-stribeck_square_pan)))
     dx[5] = force_gear_pan * inverse_mass_gear_pan * (slide_pan * slide_pan)
-    dx[6] = (-K_t_pan * N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
-    dx[7] = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
+    dx[6] = rate_of_i_pan_term
+    dx[7] = rate_of_i_tilt_term
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def mode_derivative(t, x, u, p, m, dx):
+    """Write the time derivative of the state into dx in the modes m.
+
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
+    see MODE_NAMES; dx [8] in STATE_UNITS per s.
+    """
+    prepared_derivative(t, x, u, p, m, constants(p), dx)
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def guards(t, x, u, p, m, g):
+    """Write holding and breakaway torques, gap separations and contact torques into g.
+
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
+    see MODE_NAMES; g [10] in N m and rad.
+    """
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    d_shaft_pan_shaft_torque_pan_term, shaft_torque_pan_term_2 = forces[3], forces[4]
+    shaft_torque_pan, force_pan, mass_pan = forces[7], forces[8], forces[9]
+    mass_pan_tilt, mass_pan_tilt_sq, load_torque_tilt = forces[10], forces[11], forces[15]
+    force_tilt_term_2, force_tilt, mass_tilt = forces[17], forces[18], forces[19]
+    i_pan = x[6]
+    F_s_pan, a_F_s_pan, k_shaft_pan = p[14], p[18], p[22]
+    slide_tilt = m[1]
+    half_gap_pan, lowered_tilt, raised_tilt, K_t_pan_N_pan = c[4], c[8], c[12], c[17]
+    forward_tilt_term_3 = c[18]
+    slide_tilt_sq = slide_tilt * slide_tilt
+    inverse_determinant = 1.0 / (mass_pan * mass_tilt - mass_pan_tilt_sq * slide_tilt_sq)
+    accel_pan = (inverse_determinant * (force_pan * mass_tilt - force_tilt * mass_pan_tilt
+        * slide_tilt_sq))
+    g[0] = K_t_pan_N_pan * i_pan - shaft_torque_pan
+    g[1] = F_s_pan * (a_F_s_pan + 1.0)
+    g[2] = F_s_pan * (1.0 - a_F_s_pan)
+    g[3] = -accel_pan * mass_pan_tilt + force_tilt_term_2
+    forward_tilt_term = 0.5 * load_torque_tilt * (lowered_tilt + raised_tilt - 2.0)
+    forward_tilt_term_2 = abs(load_torque_tilt)
+    g[4] = -forward_tilt_term + 0.5 * forward_tilt_term_2 * forward_tilt_term_3
+    g[5] = forward_tilt_term + 0.5 * forward_tilt_term_2 * forward_tilt_term_3
+    g[6] = -shaft_torque_pan_term_2
+    g[7] = half_gap_pan
+    g[8] = (d_shaft_pan_shaft_torque_pan_term + k_shaft_pan * (-half_gap_pan
+        - shaft_torque_pan_term_2))
+    g[9] = (d_shaft_pan_shaft_torque_pan_term + k_shaft_pan * (half_gap_pan
+        - shaft_torque_pan_term_2))
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def energy(t, x, u, p, m, e):
+    """Write stored energy in J, power in and dissipated power in W into e.
+
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
+    see MODE_NAMES; e [3] in J, W and W.
+    """
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    cos_tilt, sin_tilt, shaft_torque_pan_term = forces[0], forces[1], forces[2]
+    d_shaft_pan_shaft_torque_pan_term, shaft_torque_pan_term_3 = forces[3], forces[5]
+    k_shaft_pan_shaft_torque_pan_term_3, mass_pan, mass_pan_tilt = forces[6], forces[9], forces[10]
+    ratio_tilt_sq, omega_tilt_sq, force_tilt_term = forces[12], forces[13], forces[16]
+    mass_tilt, omega_gear_pan_sq, force_gear_pan_term = forces[19], forces[20], forces[21]
+    omega_pan, omega_tilt, omega_gear_pan, i_pan, i_tilt = x[2], x[3], x[5], x[6], x[7]
+    u_pan, u_tilt = u[0], u[1]
+    b_pan, b_tilt, k_shaft_pan, L_pan, R_pan, L_tilt = p[11], p[12], p[22], p[24], p[25], p[29]
+    R_tilt, b_motor_tilt = p[30], p[33]
+    side_pan, active_pan = m[2], m[3]
+    gravity_cos_tilt, gravity_sin_tilt, mass_gear_pan = c[13], c[14], c[15]
+    side_pan_sq = side_pan * side_pan
+    i_pan_sq = i_pan * i_pan
+    i_tilt_sq = i_tilt * i_tilt
+    omega_pan_sq = omega_pan * omega_pan
+    e[0] = (0.5 * L_pan * i_pan_sq + 0.5 * L_tilt * i_tilt_sq + cos_tilt * gravity_sin_tilt
+        - gravity_cos_tilt * sin_tilt + 0.5 * k_shaft_pan * (shaft_torque_pan_term_3
+        * shaft_torque_pan_term_3) * side_pan_sq + 0.5 * mass_gear_pan * omega_gear_pan_sq + 0.5
+        * mass_pan * omega_pan_sq + mass_pan_tilt * omega_pan * omega_tilt + 0.5 * mass_tilt
+        * omega_tilt_sq)
+    e[1] = i_pan * u_pan + i_tilt * u_tilt
+    twist_rate_pan = shaft_torque_pan_term * side_pan_sq
+    winding_loss_pan = R_pan * i_pan_sq
+    winding_loss_tilt = R_tilt * i_tilt_sq
+    e[2] = (b_motor_tilt * omega_tilt_sq * ratio_tilt_sq + b_pan * omega_pan_sq + b_tilt
+        * omega_tilt_sq + force_gear_pan_term * omega_gear_pan + force_tilt_term * omega_tilt
+        + twist_rate_pan * (active_pan * d_shaft_pan_shaft_torque_pan_term
+        - k_shaft_pan_shaft_torque_pan_term_3 * (1.0 - active_pan)) + winding_loss_pan
+        + winding_loss_tilt)
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def equation_error(t, x, u, p, m, r):
+    """Write torques that rows lack, then rates of other states, into r; x ends in accelerations.
+
+    t in s; x [11] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
+    see MODE_NAMES; r [5] in N m, then STATE_UNITS per s.
+    """
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    force_pan, mass_pan, mass_pan_tilt, force_tilt = forces[8], forces[9], forces[10], forces[18]
+    mass_tilt, force_gear_pan, rate_of_i_pan_term = forces[19], forces[22], forces[23]
+    rate_of_i_tilt_term = forces[24]
+    given_accel_pan, given_accel_tilt, given_accel_gear_pan = x[8], x[9], x[10]
+    mass_gear_pan = c[15]
+    r[0] = -force_pan + given_accel_pan * mass_pan + given_accel_tilt * mass_pan_tilt
+    r[1] = -force_tilt + given_accel_pan * mass_pan_tilt + given_accel_tilt * mass_tilt
+    r[2] = -force_gear_pan + given_accel_gear_pan * mass_gear_pan
+    r[3] = rate_of_i_pan_term
+    r[4] = rate_of_i_tilt_term
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     """Write the non-zero derivatives of dx into fx, fu, fp and those of guards into gx, gp.
 
     t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
     see MODE_NAMES; fx [8, 8]; fu [8, 2]; fp [8, 44]; gx [10, 8]; gp [10, 44].
     """
-    theta_pan = x[0]
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    theta_gear_pan = x[4]
-    omega_gear_pan = x[5]
-    i_pan = x[6]
-    i_tilt = x[7]
-    u_pan = u[0]
-    u_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    b_pan = p[11]
-    b_tilt = p[12]
-    F_c_pan = p[13]
-    F_s_pan = p[14]
-    v_s_pan = p[15]
-    F_v_pan = p[16]
-    a_F_c_pan = p[17]
-    a_F_s_pan = p[18]
-    a_v_s_pan = p[19]
-    a_F_v_pan = p[20]
-    gap_pan = p[21]
-    k_shaft_pan = p[22]
-    d_shaft_pan = p[23]
-    L_pan = p[24]
-    R_pan = p[25]
-    K_t_pan = p[26]
-    J_motor_pan = p[27]
-    N_pan = p[28]
-    L_tilt = p[29]
-    R_tilt = p[30]
-    K_t_tilt = p[31]
-    J_motor_tilt = p[32]
-    b_motor_tilt = p[33]
-    N_tilt = p[34]
-    lead_tilt = p[35]
-    d_screw_tilt = p[36]
-    f_screw_tilt = p[37]
-    l_ground_tilt = p[38]
-    l_min_tilt = p[39]
-    r_arm_tilt = p[40]
-    s_start_tilt = p[41]
-    gravity = p[43]
-    slide_pan = m[0]
-    slide_tilt = m[1]
-    side_pan = m[2]
-    active_pan = m[3]
+    theta_pan, theta_tilt, omega_pan, omega_tilt, theta_gear_pan = x[0], x[1], x[2], x[3], x[4]
+    omega_gear_pan, i_pan, i_tilt = x[5], x[6], x[7]
+    u_pan, u_tilt = u[0], u[1]
+    J_pan, J_x_tilt, J_y_tilt, J_z_tilt, m_payload, J_x_payload = p[0], p[1], p[2], p[3], p[4], p[5]
+    J_y_payload, J_z_payload, c_x_payload, c_y_payload, c_z_payload = p[6], p[7], p[8], p[9], p[10]
+    b_pan, b_tilt, F_c_pan, F_s_pan, v_s_pan, F_v_pan = p[11], p[12], p[13], p[14], p[15], p[16]
+    a_F_c_pan, a_F_s_pan, a_v_s_pan, a_F_v_pan, gap_pan = p[17], p[18], p[19], p[20], p[21]
+    k_shaft_pan, d_shaft_pan, L_pan, R_pan, K_t_pan = p[22], p[23], p[24], p[25], p[26]
+    J_motor_pan, N_pan, L_tilt, R_tilt, K_t_tilt = p[27], p[28], p[29], p[30], p[31]
+    J_motor_tilt, b_motor_tilt, N_tilt, lead_tilt, d_screw_tilt = p[32], p[33], p[34], p[35], p[36]
+    f_screw_tilt, l_ground_tilt, l_min_tilt, r_arm_tilt = p[37], p[38], p[39], p[40]
+    s_start_tilt, gravity = p[41], p[43]
+    slide_pan, slide_tilt, side_pan, active_pan = m[0], m[1], m[2], m[3]
     c_x_payload_sq = c_x_payload * c_x_payload
     c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
     c_y_payload_sq = c_y_payload * c_y_payload
@@ -1759,173 +1645,21 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + backward_tilt_by_theta_pan_term * gravity_sin_tilt_by_gravity_sin_tilt)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def guards(t, x, u, p, m, g):
-    """Write holding and breakaway torques, gap separations and contact torques into g.
-
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
-    see MODE_NAMES; g [10] in N m and rad.
-    """
-    theta_pan = x[0]
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    theta_gear_pan = x[4]
-    omega_gear_pan = x[5]
-    i_pan = x[6]
-    i_tilt = x[7]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    b_pan = p[11]
-    b_tilt = p[12]
-    F_s_pan = p[14]
-    a_F_s_pan = p[18]
-    gap_pan = p[21]
-    k_shaft_pan = p[22]
-    d_shaft_pan = p[23]
-    K_t_pan = p[26]
-    N_pan = p[28]
-    K_t_tilt = p[31]
-    J_motor_tilt = p[32]
-    b_motor_tilt = p[33]
-    N_tilt = p[34]
-    lead_tilt = p[35]
-    d_screw_tilt = p[36]
-    f_screw_tilt = p[37]
-    l_ground_tilt = p[38]
-    l_min_tilt = p[39]
-    r_arm_tilt = p[40]
-    s_start_tilt = p[41]
-    gravity = p[43]
-    slide_tilt = m[1]
-    side_pan = m[2]
-    active_pan = m[3]
-    shaft_torque_pan_term = d_shaft_pan * (omega_gear_pan - omega_pan)
-    half_gap_pan = 0.5 * gap_pan
-    shaft_torque_pan_term_2 = -theta_gear_pan + theta_pan
-    shaft_torque_pan = (active_pan * (k_shaft_pan * (-half_gap_pan * side_pan
-        - shaft_torque_pan_term_2) + shaft_torque_pan_term))
-    g[0] = K_t_pan * N_pan * i_pan - shaft_torque_pan
-    g[1] = F_s_pan * (a_F_s_pan + 1.0)
-    g[2] = F_s_pan * (1.0 - a_F_s_pan)
-    cos_tilt = math.cos(theta_tilt)
-    inertia_pan_sin_cos_tilt = 2.0 * c_x_payload * c_z_payload * m_payload
-    inertia_pan_sin_sq_tilt_term = (c_z_payload * c_z_payload) * m_payload
-    inertia_pan_sin_sq_tilt_term_2 = (c_x_payload * c_x_payload) * m_payload
-    inertia_pan_sin_sq_tilt = (J_x_payload + J_x_tilt - J_z_payload - J_z_tilt
-        + inertia_pan_sin_sq_tilt_term - inertia_pan_sin_sq_tilt_term_2)
-    sin_tilt = math.sin(theta_tilt)
-    inertia_pan_per_sin_tilt = (cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt
-        * sin_tilt)
-    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
-    c_y_payload_m_payload = c_y_payload * m_payload
-    coupling_cos_tilt = c_y_payload_m_payload * c_z_payload
-    coupling_sin_tilt = c_x_payload * c_y_payload_m_payload
-    force_pan = (-b_pan * omega_pan - omega_tilt * (coriolis + omega_tilt * (cos_tilt
-        * coupling_sin_tilt + coupling_cos_tilt * sin_tilt)) + shaft_torque_pan)
-    inertia_tilt = (J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term
-        + inertia_pan_sin_sq_tilt_term_2)
-    inertia_pan = (J_pan + J_z_payload + J_z_tilt + (c_y_payload * c_y_payload) * m_payload
-        + inertia_pan_sin_sq_tilt_term_2)
-    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
-    mass_pan_inverse = 1.0 / mass_pan
-    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
-    mass_pan_tilt_sq = mass_pan_tilt * mass_pan_tilt
-    load_inertia_tilt = inertia_tilt - mass_pan_inverse * mass_pan_tilt_sq
-    lowered_tilt_term = math.pi * d_screw_tilt
-    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
-    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
-    lead_tilt_inverse = 1.0 / lead_tilt
-    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
-    lowered_tilt = (-lead_tilt_inverse_lowered_tilt_term * (f_screw_tilt_lowered_tilt_term
-        - lead_tilt) / (f_screw_tilt_lead_tilt + lowered_tilt_term))
-    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
-    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
-    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
-    linkage_cos_tilt = (l_ground_tilt_sq_plus_r_arm_tilt_sq - ((l_min_tilt + s_start_tilt)
-        * (l_min_tilt + s_start_tilt)))
-    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
-    linkage_sin_tilt = (math.sqrt(4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt
-        * linkage_cos_tilt)))
-    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt = (math.sqrt(-cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq
-        - linkage_sin_tilt_sin_tilt))
-    ratio_tilt_term = math.pi * N_tilt * lead_tilt_inverse / length_tilt
-    ratio_tilt_term_2 = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
-    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
-    lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
-    lost_lowering_tilt = ((1.0 - lowered_tilt) / abs(load_inertia_tilt * lowered_tilt
-        + lost_lowering_tilt_term))
-    raised_tilt = (lead_tilt_inverse_lowered_tilt_term * (f_screw_tilt_lowered_tilt_term
-        + lead_tilt) / (-f_screw_tilt_lead_tilt + lowered_tilt_term))
-    lost_raising_tilt = ((raised_tilt - 1.0) / (load_inertia_tilt * raised_tilt
-        + lost_lowering_tilt_term))
-    length_tilt_by_theta_tilt = 0.5 * ratio_tilt_term_2 / length_tilt
-    ratio_tilt_by_theta_tilt = (-math.pi * N_tilt * lead_tilt_inverse * length_tilt_by_theta_tilt
-        * ratio_tilt_term_2 / (length_tilt * length_tilt) + ratio_tilt_term
-        * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt))
-    driving_torque_tilt_term = (J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt
-        * ratio_tilt_by_theta_tilt)
-    driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt * ratio_tilt
-    driving_torque_tilt = -driving_torque_tilt_term + driving_torque_tilt_term_2 * ratio_tilt
-    gravity_m_payload = gravity * m_payload
-    gravity_cos_tilt = c_x_payload * gravity_m_payload
-    gravity_sin_tilt = c_z_payload * gravity_m_payload
-    load_torque_tilt_term = (-b_tilt * omega_tilt + 0.5 * coriolis * omega_pan + cos_tilt
-        * gravity_cos_tilt + gravity_sin_tilt * sin_tilt)
-    load_torque_tilt = -force_pan * mass_pan_inverse * mass_pan_tilt + load_torque_tilt_term
-    carried_tilt = (driving_torque_tilt * load_inertia_tilt - load_torque_tilt
-        * lost_lowering_tilt_term)
-    carried_tilt_slide_tilt = carried_tilt * slide_tilt
-    transmitted_torque_tilt = driving_torque_tilt_term_2 * ratio_tilt
-    force_tilt_term = -driving_torque_tilt_term + load_torque_tilt_term + transmitted_torque_tilt
-    force_tilt = (force_tilt_term - slide_tilt * (0.5 * carried_tilt_slide_tilt
-        * (-lost_lowering_tilt + lost_raising_tilt) + 0.5 * (lost_lowering_tilt + lost_raising_tilt)
-        * abs(carried_tilt_slide_tilt)))
-    mass_tilt = inertia_tilt + lost_lowering_tilt_term
-    slide_tilt_sq = slide_tilt * slide_tilt
-    inverse_determinant = 1.0 / (mass_pan * mass_tilt - mass_pan_tilt_sq * slide_tilt_sq)
-    accel_pan = (inverse_determinant * (force_pan * mass_tilt - force_tilt * mass_pan_tilt
-        * slide_tilt_sq))
-    g[3] = -accel_pan * mass_pan_tilt + force_tilt_term
-    forward_tilt_term = 0.5 * load_torque_tilt * (lowered_tilt + raised_tilt - 2.0)
-    forward_tilt_term_2 = abs(load_torque_tilt)
-    forward_tilt_term_3 = -lowered_tilt + raised_tilt
-    g[4] = -forward_tilt_term + 0.5 * forward_tilt_term_2 * forward_tilt_term_3
-    g[5] = forward_tilt_term + 0.5 * forward_tilt_term_2 * forward_tilt_term_3
-    g[6] = -shaft_torque_pan_term_2
-    g[7] = half_gap_pan
-    g[8] = k_shaft_pan * (-half_gap_pan - shaft_torque_pan_term_2) + shaft_torque_pan_term
-    g[9] = k_shaft_pan * (half_gap_pan - shaft_torque_pan_term_2) + shaft_torque_pan_term
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def outputs(t, x, u, p, y):
     """Write the measured signals into y.
 
     t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; y [4] in
     OUTPUT_UNITS.
     """
-    theta_pan = x[0]
-    theta_tilt = x[1]
-    i_pan = x[6]
-    i_tilt = x[7]
+    theta_pan, theta_tilt, i_pan, i_tilt = x[0], x[1], x[6], x[7]
     y[0] = theta_pan
     y[1] = theta_tilt
     y[2] = i_pan
     y[3] = i_tilt
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def output_jacobian(t, x, u, p, yx, yp):
     """Write the non-zero derivatives of outputs by state and parameter.
 
@@ -1938,381 +1672,13 @@ def output_jacobian(t, x, u, p, yx, yp):
     yx[3, 7] = 1.0
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def energy(t, x, u, p, m, e):
-    """Write stored energy in J, power in and dissipated power in W into e.
-
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
-    see MODE_NAMES; e [3] in J, W and W.
-    """
-    theta_pan = x[0]
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    theta_gear_pan = x[4]
-    omega_gear_pan = x[5]
-    i_pan = x[6]
-    i_tilt = x[7]
-    u_pan = u[0]
-    u_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    b_pan = p[11]
-    b_tilt = p[12]
-    F_c_pan = p[13]
-    F_s_pan = p[14]
-    v_s_pan = p[15]
-    F_v_pan = p[16]
-    a_F_c_pan = p[17]
-    a_F_s_pan = p[18]
-    a_v_s_pan = p[19]
-    a_F_v_pan = p[20]
-    gap_pan = p[21]
-    k_shaft_pan = p[22]
-    d_shaft_pan = p[23]
-    L_pan = p[24]
-    R_pan = p[25]
-    J_motor_pan = p[27]
-    N_pan = p[28]
-    L_tilt = p[29]
-    R_tilt = p[30]
-    K_t_tilt = p[31]
-    J_motor_tilt = p[32]
-    b_motor_tilt = p[33]
-    N_tilt = p[34]
-    lead_tilt = p[35]
-    d_screw_tilt = p[36]
-    f_screw_tilt = p[37]
-    l_ground_tilt = p[38]
-    l_min_tilt = p[39]
-    r_arm_tilt = p[40]
-    s_start_tilt = p[41]
-    gravity = p[43]
-    slide_pan = m[0]
-    slide_tilt = m[1]
-    side_pan = m[2]
-    active_pan = m[3]
-    sin_tilt = math.sin(theta_tilt)
-    c_x_payload_sin_tilt = c_x_payload * sin_tilt
-    c_y_payload_m_payload = c_y_payload * m_payload
-    stored_term = c_x_payload_sin_tilt * c_y_payload_m_payload
-    cos_tilt = math.cos(theta_tilt)
-    c_z_payload_cos_tilt = c_z_payload * cos_tilt
-    stored_term_2 = c_y_payload_m_payload * c_z_payload_cos_tilt
-    sin_tilt_sq = sin_tilt * sin_tilt
-    J_x_payload_sin_tilt_sq = J_x_payload * sin_tilt_sq
-    J_x_tilt_sin_tilt_sq = J_x_tilt * sin_tilt_sq
-    cos_tilt_sq = cos_tilt * cos_tilt
-    J_z_payload_cos_tilt_sq = J_z_payload * cos_tilt_sq
-    J_z_tilt_cos_tilt_sq = J_z_tilt * cos_tilt_sq
-    c_x_payload_sq = c_x_payload * c_x_payload
-    c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
-    c_x_payload_sq_m_payload_cos_tilt_sq = c_x_payload_sq_m_payload * cos_tilt_sq
-    stored_term_3 = (c_y_payload * c_y_payload) * m_payload
-    sin_tilt_sq_stored_term_3 = sin_tilt_sq * stored_term_3
-    cos_tilt_sq_stored_term_3 = cos_tilt_sq * stored_term_3
-    stored_term_4 = (c_z_payload * c_z_payload) * m_payload
-    sin_tilt_sq_stored_term_4 = sin_tilt_sq * stored_term_4
-    stored_term_5 = c_x_payload_sin_tilt * c_z_payload_cos_tilt
-    omega_pan_omega_tilt = omega_pan * omega_tilt
-    half_gap_pan = 0.5 * gap_pan
-    stored_term_6 = -half_gap_pan * side_pan + theta_gear_pan - theta_pan
-    gravity_m_payload = gravity * m_payload
-    omega_pan_sq = omega_pan * omega_pan
-    m_payload_omega_pan_sq = m_payload * omega_pan_sq
-    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
-    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
-    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
-    linkage_cos_tilt = (l_ground_tilt_sq_plus_r_arm_tilt_sq - ((l_min_tilt + s_start_tilt)
-        * (l_min_tilt + s_start_tilt)))
-    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
-    linkage_sin_tilt = (math.sqrt(4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt
-        * linkage_cos_tilt)))
-    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt = (math.sqrt(-cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq
-        - linkage_sin_tilt_sin_tilt))
-    lead_tilt_inverse = 1.0 / lead_tilt
-    ratio_tilt_term = math.pi * N_tilt * lead_tilt_inverse / length_tilt
-    ratio_tilt_term_2 = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
-    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
-    ratio_tilt_sq = ratio_tilt * ratio_tilt
-    J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
-    omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
-    side_pan_sq = side_pan * side_pan
-    i_pan_sq = i_pan * i_pan
-    i_tilt_sq = i_tilt * i_tilt
-    half_omega_pan_sq = 0.5 * omega_pan_sq
-    omega_tilt_sq = omega_tilt * omega_tilt
-    half_omega_tilt_sq = 0.5 * omega_tilt_sq
-    e[0] = (0.5 * J_motor_pan * (N_pan * N_pan) * omega_gear_pan_sq + J_motor_tilt_ratio_tilt_sq
-        * half_omega_tilt_sq + J_pan * half_omega_pan_sq + J_x_payload_sin_tilt_sq
-        * half_omega_pan_sq + J_x_tilt_sin_tilt_sq * half_omega_pan_sq + J_y_payload
-        * half_omega_tilt_sq + J_y_tilt * half_omega_tilt_sq + J_z_payload_cos_tilt_sq
-        * half_omega_pan_sq + J_z_tilt_cos_tilt_sq * half_omega_pan_sq + 0.5 * L_pan * i_pan_sq
-        + 0.5 * L_tilt * i_tilt_sq - c_x_payload_sin_tilt * gravity_m_payload
-        + c_x_payload_sq_m_payload * half_omega_tilt_sq + c_x_payload_sq_m_payload_cos_tilt_sq
-        * half_omega_pan_sq + c_z_payload_cos_tilt * gravity_m_payload + cos_tilt_sq_stored_term_3
-        * half_omega_pan_sq + half_omega_pan_sq * sin_tilt_sq_stored_term_3 + half_omega_pan_sq
-        * sin_tilt_sq_stored_term_4 + half_omega_tilt_sq * stored_term_4 + 0.5 * k_shaft_pan
-        * side_pan_sq * (stored_term_6 * stored_term_6) + m_payload_omega_pan_sq * stored_term_5
-        + omega_pan_omega_tilt * stored_term - omega_pan_omega_tilt * stored_term_2)
-    e[1] = i_pan * u_pan + i_tilt * u_tilt
-    coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
-    follower_coupling_tilt = stored_term - stored_term_2
-    twice_m_payload = 2.0 * m_payload
-    follower_inertia_tilt = (J_pan + J_x_payload_sin_tilt_sq + J_x_tilt_sin_tilt_sq
-        + J_z_payload_cos_tilt_sq + J_z_tilt_cos_tilt_sq + c_x_payload_sq_m_payload_cos_tilt_sq
-        + cos_tilt_sq_stored_term_3 + sin_tilt_sq_stored_term_3 + sin_tilt_sq_stored_term_4
-        + stored_term_5 * twice_m_payload)
-    follower_inertia_tilt_inverse = 1.0 / follower_inertia_tilt
-    load_inertia_tilt = (J_y_payload + J_y_tilt + c_x_payload_sq_m_payload - (follower_coupling_tilt
-        * follower_coupling_tilt) * follower_inertia_tilt_inverse + stored_term_4)
-    lowered_tilt_term = math.pi * d_screw_tilt
-    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
-    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
-    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
-    lowered_tilt = (-lead_tilt_inverse_lowered_tilt_term * (f_screw_tilt_lowered_tilt_term
-        - lead_tilt) / (f_screw_tilt_lead_tilt + lowered_tilt_term))
-    lost_lowering_tilt = ((1.0 - lowered_tilt) / abs(J_motor_tilt_ratio_tilt_sq + load_inertia_tilt
-        * lowered_tilt))
-    raised_tilt = (lead_tilt_inverse_lowered_tilt_term * (f_screw_tilt_lowered_tilt_term
-        + lead_tilt) / (-f_screw_tilt_lead_tilt + lowered_tilt_term))
-    lost_raising_tilt = ((raised_tilt - 1.0) / (J_motor_tilt_ratio_tilt_sq + load_inertia_tilt
-        * raised_tilt))
-    follower_torque_tilt_term = omega_gear_pan - omega_pan
-    d_shaft_pan_follower_torque_tilt_term = d_shaft_pan * follower_torque_tilt_term
-    k_shaft_pan_stored_term_6 = k_shaft_pan * stored_term_6
-    length_tilt_by_theta_tilt = 0.5 * ratio_tilt_term_2 / length_tilt
-    ratio_tilt_by_theta_tilt = (-math.pi * N_tilt * lead_tilt_inverse * length_tilt_by_theta_tilt
-        * ratio_tilt_term_2 / (length_tilt * length_tilt) + ratio_tilt_term
-        * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt))
-    driving_torque_tilt = (-J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
-        + ratio_tilt * (K_t_tilt * i_tilt - b_motor_tilt * omega_tilt * ratio_tilt))
-    cos_tilt_sin_tilt = cos_tilt * sin_tilt
-    follower_torque_tilt_term_2 = 2.0 * cos_tilt_sin_tilt * omega_pan_omega_tilt
-    c_x_payload_cos_tilt = c_x_payload * cos_tilt
-    c_y_payload_m_payload_omega_tilt_sq = c_y_payload_m_payload * omega_tilt_sq
-    c_z_payload_sin_tilt = c_z_payload * sin_tilt
-    c_x_payload_c_z_payload = c_x_payload * c_z_payload
-    follower_torque_tilt = (-J_x_payload * follower_torque_tilt_term_2 - J_x_tilt
-        * follower_torque_tilt_term_2 + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt
-        * sin_tilt + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt + active_pan
-        * (d_shaft_pan_follower_torque_tilt_term + k_shaft_pan_stored_term_6) - b_pan * omega_pan
-        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
-        - c_x_payload_c_z_payload * cos_tilt_sq * omega_pan_omega_tilt * twice_m_payload
-        - c_x_payload_cos_tilt * c_y_payload_m_payload_omega_tilt_sq + 2.0 * c_x_payload_sq
-        * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
-        - c_y_payload_m_payload_omega_tilt_sq * c_z_payload_sin_tilt - follower_torque_tilt_term_2
-        * stored_term_4)
-    cos_tilt_sin_tilt_omega_pan_sq = cos_tilt_sin_tilt * omega_pan_sq
-    load_torque_tilt_term = c_x_payload_c_z_payload * m_payload_omega_pan_sq
-    load_torque_tilt = (J_x_payload * cos_tilt_sin_tilt_omega_pan_sq + J_x_tilt
-        * cos_tilt_sin_tilt_omega_pan_sq - J_z_payload * cos_tilt_sin_tilt_omega_pan_sq - J_z_tilt
-        * cos_tilt_sin_tilt_omega_pan_sq - b_tilt * omega_tilt + c_x_payload_cos_tilt
-        * gravity_m_payload - c_x_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
-        + c_z_payload_sin_tilt * gravity_m_payload + cos_tilt_sin_tilt_omega_pan_sq * stored_term_4
-        + cos_tilt_sq * load_torque_tilt_term - follower_coupling_tilt
-        * follower_inertia_tilt_inverse * follower_torque_tilt - load_torque_tilt_term
-        * sin_tilt_sq)
-    carried_tilt = (-J_motor_tilt_ratio_tilt_sq * load_torque_tilt + driving_torque_tilt
-        * load_inertia_tilt)
-    carried_tilt_slide_tilt = carried_tilt * slide_tilt
-    omega_gear_pan_slide_pan = omega_gear_pan * slide_pan
-    stribeck_square_pan = (omega_gear_pan_sq / ((v_s_pan * v_s_pan) * ((a_v_s_pan * slide_pan + 1.0)
-        * (a_v_s_pan * slide_pan + 1.0))))
-    twist_rate_pan = follower_torque_tilt_term * side_pan_sq
-    viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
-    winding_loss_pan = R_pan * i_pan_sq
-    winding_loss_tilt = R_tilt * i_tilt_sq
-    e[2] = (b_motor_tilt * omega_tilt_sq * ratio_tilt_sq + b_pan * omega_pan_sq + b_tilt
-        * omega_tilt_sq + omega_gear_pan_slide_pan * (coulomb_torque_pan + omega_gear_pan_slide_pan
-        * viscous_coefficient_pan + (F_s_pan * (a_F_s_pan * slide_pan + 1.0) - coulomb_torque_pan)
-        * math.exp(-stribeck_square_pan)) + omega_tilt * slide_tilt * (0.5 * carried_tilt_slide_tilt
-        * (-lost_lowering_tilt + lost_raising_tilt) + 0.5 * (lost_lowering_tilt + lost_raising_tilt)
-        * abs(carried_tilt_slide_tilt)) + twist_rate_pan * (active_pan
-        * d_shaft_pan_follower_torque_tilt_term - k_shaft_pan_stored_term_6 * (1.0 - active_pan))
-        + winding_loss_pan + winding_loss_tilt)
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def equation_error(t, x, u, p, m, r):
-    """Write the torque that every row lacks, then rates of other states into r; x ends in accel.
-
-    t in s; x [11] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
-    see MODE_NAMES; r [5] in N m, then STATE_UNITS per s.
-    """
-    theta_pan = x[0]
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    theta_gear_pan = x[4]
-    omega_gear_pan = x[5]
-    i_pan = x[6]
-    i_tilt = x[7]
-    accel_pan = x[8]
-    accel_tilt = x[9]
-    accel_gear_pan = x[10]
-    u_pan = u[0]
-    u_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    b_pan = p[11]
-    b_tilt = p[12]
-    F_c_pan = p[13]
-    F_s_pan = p[14]
-    v_s_pan = p[15]
-    F_v_pan = p[16]
-    a_F_c_pan = p[17]
-    a_F_s_pan = p[18]
-    a_v_s_pan = p[19]
-    a_F_v_pan = p[20]
-    gap_pan = p[21]
-    k_shaft_pan = p[22]
-    d_shaft_pan = p[23]
-    L_pan = p[24]
-    R_pan = p[25]
-    K_t_pan = p[26]
-    J_motor_pan = p[27]
-    N_pan = p[28]
-    L_tilt = p[29]
-    R_tilt = p[30]
-    K_t_tilt = p[31]
-    J_motor_tilt = p[32]
-    b_motor_tilt = p[33]
-    N_tilt = p[34]
-    lead_tilt = p[35]
-    d_screw_tilt = p[36]
-    f_screw_tilt = p[37]
-    l_ground_tilt = p[38]
-    l_min_tilt = p[39]
-    r_arm_tilt = p[40]
-    s_start_tilt = p[41]
-    gravity = p[43]
-    slide_pan = m[0]
-    slide_tilt = m[1]
-    side_pan = m[2]
-    active_pan = m[3]
-    cos_tilt = math.cos(theta_tilt)
-    inertia_pan_sin_cos_tilt = 2.0 * c_x_payload * c_z_payload * m_payload
-    inertia_pan_sin_sq_tilt_term = (c_x_payload * c_x_payload) * m_payload
-    inertia_pan_sin_sq_tilt_term_2 = (c_z_payload * c_z_payload) * m_payload
-    inertia_pan_sin_sq_tilt = (J_x_payload + J_x_tilt - J_z_payload - J_z_tilt
-        - inertia_pan_sin_sq_tilt_term + inertia_pan_sin_sq_tilt_term_2)
-    sin_tilt = math.sin(theta_tilt)
-    inertia_pan_per_sin_tilt = (cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt
-        * sin_tilt)
-    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
-    c_y_payload_m_payload = c_y_payload * m_payload
-    coupling_cos_tilt = c_y_payload_m_payload * c_z_payload
-    coupling_sin_tilt = c_x_payload * c_y_payload_m_payload
-    half_gap_pan = 0.5 * gap_pan
-    shaft_torque_pan = (active_pan * (d_shaft_pan * (omega_gear_pan - omega_pan) + k_shaft_pan
-        * (-half_gap_pan * side_pan + theta_gear_pan - theta_pan)))
-    force_pan = (-b_pan * omega_pan - omega_tilt * (coriolis + omega_tilt * (cos_tilt
-        * coupling_sin_tilt + coupling_cos_tilt * sin_tilt)) + shaft_torque_pan)
-    inertia_pan = (J_pan + J_z_payload + J_z_tilt + (c_y_payload * c_y_payload) * m_payload
-        + inertia_pan_sin_sq_tilt_term)
-    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
-    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
-    r[0] = accel_pan * mass_pan + accel_tilt * mass_pan_tilt - force_pan
-    inertia_tilt = (J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term
-        + inertia_pan_sin_sq_tilt_term_2)
-    mass_pan_inverse = 1.0 / mass_pan
-    load_inertia_tilt = inertia_tilt - mass_pan_inverse * (mass_pan_tilt * mass_pan_tilt)
-    lowered_tilt_term = math.pi * d_screw_tilt
-    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
-    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
-    lead_tilt_inverse = 1.0 / lead_tilt
-    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
-    lowered_tilt = (-lead_tilt_inverse_lowered_tilt_term * (f_screw_tilt_lowered_tilt_term
-        - lead_tilt) / (f_screw_tilt_lead_tilt + lowered_tilt_term))
-    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
-    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
-    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
-    linkage_cos_tilt = (l_ground_tilt_sq_plus_r_arm_tilt_sq - ((l_min_tilt + s_start_tilt)
-        * (l_min_tilt + s_start_tilt)))
-    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
-    linkage_sin_tilt = (math.sqrt(4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt
-        * linkage_cos_tilt)))
-    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt = (math.sqrt(-cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq
-        - linkage_sin_tilt_sin_tilt))
-    ratio_tilt_term = math.pi * N_tilt * lead_tilt_inverse / length_tilt
-    ratio_tilt_term_2 = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
-    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
-    lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
-    lost_lowering_tilt = ((1.0 - lowered_tilt) / abs(load_inertia_tilt * lowered_tilt
-        + lost_lowering_tilt_term))
-    raised_tilt = (lead_tilt_inverse_lowered_tilt_term * (f_screw_tilt_lowered_tilt_term
-        + lead_tilt) / (-f_screw_tilt_lead_tilt + lowered_tilt_term))
-    lost_raising_tilt = ((raised_tilt - 1.0) / (load_inertia_tilt * raised_tilt
-        + lost_lowering_tilt_term))
-    length_tilt_by_theta_tilt = 0.5 * ratio_tilt_term_2 / length_tilt
-    ratio_tilt_by_theta_tilt = (-math.pi * N_tilt * lead_tilt_inverse * length_tilt_by_theta_tilt
-        * ratio_tilt_term_2 / (length_tilt * length_tilt) + ratio_tilt_term
-        * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt))
-    driving_torque_tilt_term = (J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt
-        * ratio_tilt_by_theta_tilt)
-    gravity_m_payload = gravity * m_payload
-    gravity_cos_tilt = c_x_payload * gravity_m_payload
-    gravity_sin_tilt = c_z_payload * gravity_m_payload
-    load_torque_tilt_term = (-b_tilt * omega_tilt + 0.5 * coriolis * omega_pan + cos_tilt
-        * gravity_cos_tilt + gravity_sin_tilt * sin_tilt)
-    omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
-    driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
-    driving_torque_tilt = -driving_torque_tilt_term + driving_torque_tilt_term_2 * ratio_tilt
-    load_torque_tilt = -force_pan * mass_pan_inverse * mass_pan_tilt + load_torque_tilt_term
-    carried_tilt = (driving_torque_tilt * load_inertia_tilt - load_torque_tilt
-        * lost_lowering_tilt_term)
-    carried_tilt_slide_tilt = carried_tilt * slide_tilt
-    transmitted_torque_tilt = driving_torque_tilt_term_2 * ratio_tilt
-    force_tilt = (-driving_torque_tilt_term + load_torque_tilt_term - slide_tilt * (0.5
-        * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt) + 0.5
-        * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt))
-        + transmitted_torque_tilt)
-    mass_tilt = inertia_tilt + lost_lowering_tilt_term
-    r[1] = accel_pan * mass_pan_tilt + accel_tilt * mass_tilt - force_tilt
-    coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
-    stribeck_square_pan = ((omega_gear_pan * omega_gear_pan) / ((v_s_pan * v_s_pan) * ((a_v_s_pan
-        * slide_pan + 1.0) * (a_v_s_pan * slide_pan + 1.0))))
-    viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
-    force_gear_pan = (K_t_pan * N_pan * i_pan - shaft_torque_pan - slide_pan * (coulomb_torque_pan
-        + omega_gear_pan * slide_pan * viscous_coefficient_pan + (F_s_pan * (a_F_s_pan * slide_pan
-        + 1.0) - coulomb_torque_pan) * math.exp(-stribeck_square_pan)))
-    mass_gear_pan = J_motor_pan * (N_pan * N_pan)
-    r[2] = accel_gear_pan * mass_gear_pan - force_gear_pan
-    r[3] = (-K_t_pan * N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
-    r[4] = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def domain(p, bounds):
     """Write lower and upper bound of the state of every row of DOMAIN into bounds.
 
     p [44] in the units of PARAMETERS; bounds [2, 2] in STATE_UNITS: lower, upper.
     """
-    l_ground_tilt = p[38]
-    l_min_tilt = p[39]
-    r_arm_tilt = p[40]
-    s_start_tilt = p[41]
+    l_ground_tilt, l_min_tilt, r_arm_tilt, s_start_tilt = p[38], p[39], p[40], p[41]
     s_max_tilt = p[42]
     lowest_theta_tilt_term = (l_ground_tilt * l_ground_tilt) + (r_arm_tilt * r_arm_tilt)
     lowest_theta_tilt_term_2 = 0.5 / (l_ground_tilt * r_arm_tilt)
@@ -2326,21 +1692,14 @@ def domain(p, bounds):
         * (-(l_min_tilt * l_min_tilt) + lowest_theta_tilt_term)))))
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def margins(p, margin):
     """Write by how much the parameters meet every row of REQUIREMENTS into margin.
 
     p [44] in the units of PARAMETERS; margin [4] in units of what is compared.
     """
-    F_c_pan = p[13]
-    F_s_pan = p[14]
-    lead_tilt = p[35]
-    d_screw_tilt = p[36]
-    f_screw_tilt = p[37]
-    l_ground_tilt = p[38]
-    l_min_tilt = p[39]
-    r_arm_tilt = p[40]
-    s_start_tilt = p[41]
+    F_c_pan, F_s_pan, lead_tilt, d_screw_tilt, f_screw_tilt = p[13], p[14], p[35], p[36], p[37]
+    l_ground_tilt, l_min_tilt, r_arm_tilt, s_start_tilt = p[38], p[39], p[40], p[41]
     s_max_tilt = p[42]
     margin[0] = -F_c_pan + F_s_pan
     margin[1] = (2.0 * l_ground_tilt * r_arm_tilt - abs((l_ground_tilt * l_ground_tilt)
@@ -2459,4 +1818,4 @@ EFFECTS = (
      "linear actuator with lead screw and linkage",
      "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6", "", False),
 )
-# END sha256 3425b4e0c8552f12c544d5a46eb7ef5ee6f837623ef14fc26f73f600382f0bc5
+# END sha256 94fa066361b3b43fb02a2328c995c8ff36d424fc003b5f1f43b96b7aea7c91bf

@@ -28,7 +28,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "a48820fd997eb250"
+MODEL_HASH = "1fc5beaeb3fe8307"
 NAME = "ideal"
 TITLE = "Balanced pan-tilt platform of the thesis"
 # How many numbers `prepare` writes.
@@ -67,105 +67,128 @@ PARAMETERS = (
 )
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def mode_derivative(t, x, u, p, m, dx):
-    """Write the time derivative of the state into dx in the modes m.
-
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-    MODE_NAMES; dx [4] in STATE_UNITS per s.
-    """
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    tau_pan = u[0]
-    tau_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    b_pan = p[4]
-    b_tilt = p[5]
-    dx[0] = omega_pan
-    dx[1] = omega_tilt
-    cos_tilt = math.cos(theta_tilt)
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def constants(p):
+    """Return what depends on the parameters alone."""
+    J_pan, J_x_tilt, J_y_tilt, J_z_tilt = p[0], p[1], p[2], p[3]
     inertia_pan_sin_sq_tilt = J_x_tilt - J_z_tilt
+    inertia_pan = J_pan + J_z_tilt
+    inverse_mass_tilt = 1.0 / J_y_tilt
+    return (inertia_pan_sin_sq_tilt, inertia_pan, inverse_mass_tilt)
+
+
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def mass_and_forces(t, x, u, p, m, c):
+    """Return mass matrix, forces and what else the functions below have in common."""
+    theta_tilt, omega_pan, omega_tilt = x[1], x[2], x[3]
+    tau_pan, tau_tilt = u[0], u[1]
+    b_pan, b_tilt = p[4], p[5]
+    inertia_pan_sin_sq_tilt, inertia_pan = c[0], c[1]
+    cos_tilt = math.cos(theta_tilt)
     sin_tilt = math.sin(theta_tilt)
     inertia_pan_per_sin_tilt = inertia_pan_sin_sq_tilt * sin_tilt
     coriolis = cos_tilt * inertia_pan_per_sin_tilt * omega_pan
     force_pan = -b_pan * omega_pan - 2.0 * coriolis * omega_tilt + tau_pan
-    inertia_pan = J_pan + J_z_tilt
     mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
-    inverse_mass_pan = 1.0 / mass_pan
-    dx[2] = force_pan * inverse_mass_pan
     force_tilt = -b_tilt * omega_tilt + coriolis * omega_pan + tau_tilt
-    inverse_mass_tilt = 1.0 / J_y_tilt
-    dx[3] = force_tilt * inverse_mass_tilt
+    return (force_pan, mass_pan, force_tilt)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def prepare(p, c):
     """Write into c what prepared_derivative takes from the parameters alone.
 
     p [6] in the units of PARAMETERS; c [3] of prepare.
     """
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    c[0] = J_x_tilt - J_z_tilt
-    c[1] = J_pan + J_z_tilt
-    c[2] = 1.0 / J_y_tilt
+    values = constants(p)
+    for k in range(PREPARED):
+        c[k] = values[k]
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def prepared_derivative(t, x, u, p, m, c, dx):
     """Write the time derivative of the state into dx in the modes m, c being prepared.
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
     MODE_NAMES; c [3] of prepare; dx [4] in STATE_UNITS per s.
     """
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    tau_pan = u[0]
-    tau_tilt = u[1]
-    b_pan = p[4]
-    b_tilt = p[5]
-    inertia_pan_sin_sq_tilt = c[0]
-    inertia_pan = c[1]
+    forces = mass_and_forces(t, x, u, p, m, c)
+    force_pan, mass_pan, force_tilt = forces[0], forces[1], forces[2]
+    omega_pan, omega_tilt = x[2], x[3]
     inverse_mass_tilt = c[2]
     dx[0] = omega_pan
     dx[1] = omega_tilt
-    cos_tilt = math.cos(theta_tilt)
-    sin_tilt = math.sin(theta_tilt)
-    inertia_pan_per_sin_tilt = inertia_pan_sin_sq_tilt * sin_tilt
-    coriolis = cos_tilt * inertia_pan_per_sin_tilt * omega_pan
-    force_pan = -b_pan * omega_pan - 2.0 * coriolis * omega_tilt + tau_pan
-    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
     inverse_mass_pan = 1.0 / mass_pan
     dx[2] = force_pan * inverse_mass_pan
-    force_tilt = -b_tilt * omega_tilt + coriolis * omega_pan + tau_tilt
     dx[3] = force_tilt * inverse_mass_tilt
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def mode_derivative(t, x, u, p, m, dx):
+    """Write the time derivative of the state into dx in the modes m.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
+    MODE_NAMES; dx [4] in STATE_UNITS per s.
+    """
+    prepared_derivative(t, x, u, p, m, constants(p), dx)
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def guards(t, x, u, p, m, g):
+    """Write holding and breakaway torques, gap separations and contact torques into g.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
+    MODE_NAMES; g [0] in N m and rad.
+    """
+    return
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def energy(t, x, u, p, m, e):
+    """Write stored energy in J, power in and dissipated power in W into e.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
+    MODE_NAMES; e [3] in J, W and W.
+    """
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    mass_pan = forces[1]
+    omega_pan, omega_tilt = x[2], x[3]
+    tau_pan, tau_tilt = u[0], u[1]
+    J_y_tilt, b_pan, b_tilt = p[2], p[4], p[5]
+    omega_tilt_sq = omega_tilt * omega_tilt
+    omega_pan_sq = omega_pan * omega_pan
+    e[0] = 0.5 * J_y_tilt * omega_tilt_sq + 0.5 * mass_pan * omega_pan_sq
+    e[1] = omega_pan * tau_pan + omega_tilt * tau_tilt
+    e[2] = b_pan * omega_pan_sq + b_tilt * omega_tilt_sq
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def equation_error(t, x, u, p, m, r):
+    """Write torques that rows lack, then rates of other states, into r; x ends in accelerations.
+
+    t in s; x [6] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
+    MODE_NAMES; r [2] in N m, then STATE_UNITS per s.
+    """
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    force_pan, mass_pan, force_tilt = forces[0], forces[1], forces[2]
+    given_accel_pan, given_accel_tilt = x[4], x[5]
+    J_y_tilt = p[2]
+    r[0] = -force_pan + given_accel_pan * mass_pan
+    r[1] = J_y_tilt * given_accel_tilt - force_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     """Write the non-zero derivatives of dx into fx, fu, fp and those of guards into gx, gp.
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
     MODE_NAMES; fx [4, 4]; fu [4, 2]; fp [4, 6]; gx [0, 4]; gp [0, 6].
     """
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    tau_pan = u[0]
-    tau_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    b_pan = p[4]
-    b_tilt = p[5]
+    theta_tilt, omega_pan, omega_tilt = x[1], x[2], x[3]
+    tau_pan, tau_tilt = u[0], u[1]
+    J_pan, J_x_tilt, J_y_tilt, J_z_tilt, b_pan, b_tilt = p[0], p[1], p[2], p[3], p[4], p[5]
     cos_tilt = math.cos(theta_tilt)
     inertia_pan_sin_sq_tilt = J_x_tilt - J_z_tilt
     sin_tilt = math.sin(theta_tilt)
@@ -216,30 +239,19 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     fp[3, 5] = -inverse_mass_tilt * omega_tilt
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def guards(t, x, u, p, m, g):
-    """Write holding and breakaway torques, gap separations and contact torques into g.
-
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-    MODE_NAMES; g [0] in N m and rad.
-    """
-    return
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def outputs(t, x, u, p, y):
     """Write the measured signals into y.
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; y [2] in
     OUTPUT_UNITS.
     """
-    theta_pan = x[0]
-    theta_tilt = x[1]
+    theta_pan, theta_tilt = x[0], x[1]
     y[0] = theta_pan
     y[1] = theta_tilt
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def output_jacobian(t, x, u, p, yx, yp):
     """Write the non-zero derivatives of outputs by state and parameter.
 
@@ -250,69 +262,7 @@ def output_jacobian(t, x, u, p, yx, yp):
     yx[1, 1] = 1.0
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def energy(t, x, u, p, m, e):
-    """Write stored energy in J, power in and dissipated power in W into e.
-
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-    MODE_NAMES; e [3] in J, W and W.
-    """
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    tau_pan = u[0]
-    tau_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    b_pan = p[4]
-    b_tilt = p[5]
-    cos_tilt = math.cos(theta_tilt)
-    omega_pan_sq = omega_pan * omega_pan
-    half_omega_pan_sq = 0.5 * omega_pan_sq
-    omega_tilt_sq = omega_tilt * omega_tilt
-    sin_tilt = math.sin(theta_tilt)
-    e[0] = (J_pan * half_omega_pan_sq + J_x_tilt * half_omega_pan_sq * (sin_tilt * sin_tilt) + 0.5
-        * J_y_tilt * omega_tilt_sq + J_z_tilt * (cos_tilt * cos_tilt) * half_omega_pan_sq)
-    e[1] = omega_pan * tau_pan + omega_tilt * tau_tilt
-    e[2] = b_pan * omega_pan_sq + b_tilt * omega_tilt_sq
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def equation_error(t, x, u, p, m, r):
-    """Write the torque that every row lacks, then rates of other states into r; x ends in accel.
-
-    t in s; x [6] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-    MODE_NAMES; r [2] in N m, then STATE_UNITS per s.
-    """
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    accel_pan = x[4]
-    accel_tilt = x[5]
-    tau_pan = u[0]
-    tau_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    b_pan = p[4]
-    b_tilt = p[5]
-    cos_tilt = math.cos(theta_tilt)
-    inertia_pan_sin_sq_tilt = J_x_tilt - J_z_tilt
-    sin_tilt = math.sin(theta_tilt)
-    inertia_pan_per_sin_tilt = inertia_pan_sin_sq_tilt * sin_tilt
-    coriolis = cos_tilt * inertia_pan_per_sin_tilt * omega_pan
-    force_pan = -b_pan * omega_pan - 2.0 * coriolis * omega_tilt + tau_pan
-    inertia_pan = J_pan + J_z_tilt
-    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
-    r[0] = accel_pan * mass_pan - force_pan
-    force_tilt = -b_tilt * omega_tilt + coriolis * omega_pan + tau_tilt
-    r[1] = J_y_tilt * accel_tilt - force_tilt
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def domain(p, bounds):
     """Write lower and upper bound of the state of every row of DOMAIN into bounds.
 
@@ -321,7 +271,7 @@ def domain(p, bounds):
     return
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def margins(p, margin):
     """Write by how much the parameters meet every row of REQUIREMENTS into margin.
 
@@ -362,4 +312,4 @@ EFFECTS = (
      "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
      "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
 )
-# END sha256 c028ec795c1708f3564f7105de8daed4092fb7e06a832598bc8293f6b1aff231
+# END sha256 96b169352e90bf9e81b7a08be3b041056860cb9186cd527ef848766fb0358c3a

@@ -14,7 +14,7 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
       1))*exp(-omega_gear_pan**2/(v_s_pan**2*(a_v_s_pan*slide_pan + 1)**2))
   i_pan' = (-K_t_pan*N_pan*omega_gear_pan - R_pan*i_pan + u_pan)/L_pan
 
-Operations of the state derivative: 65 as derived, 53 as written, 48 of them at every
+Operations of the state derivative: 65 as derived, 54 as written, 48 of them at every
 call where `prepare` does the others once per parameter set.
 
 Effects:
@@ -32,11 +32,11 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "9e5cef4e39dce77e"
+MODEL_HASH = "914b3846e5934a31"
 NAME = "pan_drive"
 TITLE = "Pan drive of the thesis"
 # How many numbers `prepare` writes.
-PREPARED = 3
+PREPARED = 5
 AXES = ("pan",)
 STATE_NAMES = ("theta_pan", "omega_pan", "theta_gear_pan", "omega_gear_pan", "i_pan")
 STATE_UNITS = ("rad", "rad/s", "rad", "rad/s", "A")
@@ -87,162 +87,179 @@ PARAMETERS = (
 )
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def constants(p):
+    """Return what depends on the parameters alone."""
+    J_pan, gap_pan, K_t_pan, J_motor_pan, N_pan = p[0], p[10], p[15], p[16], p[17]
+    half_gap_pan = 0.5 * gap_pan
+    inverse_mass_pan = 1.0 / J_pan
+    mass_gear_pan = J_motor_pan * (N_pan * N_pan)
+    inverse_mass_gear_pan = 1.0 / mass_gear_pan
+    K_t_pan_N_pan = K_t_pan * N_pan
+    return (half_gap_pan, inverse_mass_pan, mass_gear_pan, inverse_mass_gear_pan, K_t_pan_N_pan)
+
+
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def mass_and_forces(t, x, u, p, m, c):
+    """Return mass matrix, forces and what else the functions below have in common."""
+    theta_pan, omega_pan, theta_gear_pan, omega_gear_pan, i_pan = x[0], x[1], x[2], x[3], x[4]
+    u_pan = u[0]
+    b_pan, F_c_pan, F_s_pan, v_s_pan, F_v_pan, a_F_c_pan = p[1], p[2], p[3], p[4], p[5], p[6]
+    a_F_s_pan, a_v_s_pan, a_F_v_pan, k_shaft_pan, d_shaft_pan = p[7], p[8], p[9], p[11], p[12]
+    L_pan, R_pan, K_t_pan, N_pan = p[13], p[14], p[15], p[17]
+    slide_pan, side_pan, active_pan = m[0], m[1], m[2]
+    half_gap_pan, K_t_pan_N_pan = c[0], c[4]
+    shaft_torque_pan_term = omega_gear_pan - omega_pan
+    d_shaft_pan_shaft_torque_pan_term = d_shaft_pan * shaft_torque_pan_term
+    shaft_torque_pan_term_2 = -theta_gear_pan + theta_pan
+    shaft_torque_pan_term_3 = -half_gap_pan * side_pan - shaft_torque_pan_term_2
+    k_shaft_pan_shaft_torque_pan_term_3 = k_shaft_pan * shaft_torque_pan_term_3
+    shaft_torque_pan = (active_pan * (d_shaft_pan_shaft_torque_pan_term
+        + k_shaft_pan_shaft_torque_pan_term_3))
+    force_pan = -b_pan * omega_pan + shaft_torque_pan
+    coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
+    omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
+    stribeck_square_pan = (omega_gear_pan_sq / ((v_s_pan * v_s_pan) * ((a_v_s_pan * slide_pan + 1.0)
+        * (a_v_s_pan * slide_pan + 1.0))))
+    viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
+    force_gear_pan_term = (slide_pan * (coulomb_torque_pan + omega_gear_pan * slide_pan
+        * viscous_coefficient_pan + (F_s_pan * (a_F_s_pan * slide_pan + 1.0) - coulomb_torque_pan)
+        * math.exp(-stribeck_square_pan)))
+    force_gear_pan = K_t_pan * N_pan * i_pan - force_gear_pan_term - shaft_torque_pan
+    rate_of_i_pan_term = (-K_t_pan_N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
+    return (shaft_torque_pan_term, d_shaft_pan_shaft_torque_pan_term, shaft_torque_pan_term_2,
+        shaft_torque_pan_term_3, k_shaft_pan_shaft_torque_pan_term_3, shaft_torque_pan, force_pan,
+        omega_gear_pan_sq, force_gear_pan_term, force_gear_pan, rate_of_i_pan_term)
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def prepare(p, c):
+    """Write into c what prepared_derivative takes from the parameters alone.
+
+    p [18] in the units of PARAMETERS; c [5] of prepare.
+    """
+    values = constants(p)
+    for k in range(PREPARED):
+        c[k] = values[k]
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def prepared_derivative(t, x, u, p, m, c, dx):
+    """Write the time derivative of the state into dx in the modes m, c being prepared.
+
+    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
+    see MODE_NAMES; c [5] of prepare; dx [5] in STATE_UNITS per s.
+    """
+    forces = mass_and_forces(t, x, u, p, m, c)
+    force_pan, force_gear_pan, rate_of_i_pan_term = forces[6], forces[9], forces[10]
+    omega_pan, omega_gear_pan = x[1], x[3]
+    slide_pan = m[0]
+    inverse_mass_pan, inverse_mass_gear_pan = c[1], c[3]
+    dx[0] = omega_pan
+    dx[1] = force_pan * inverse_mass_pan
+    dx[2] = omega_gear_pan
+    dx[3] = force_gear_pan * inverse_mass_gear_pan * (slide_pan * slide_pan)
+    dx[4] = rate_of_i_pan_term
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def mode_derivative(t, x, u, p, m, dx):
     """Write the time derivative of the state into dx in the modes m.
 
     t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
     see MODE_NAMES; dx [5] in STATE_UNITS per s.
     """
-    theta_pan = x[0]
-    omega_pan = x[1]
-    theta_gear_pan = x[2]
-    omega_gear_pan = x[3]
-    i_pan = x[4]
-    u_pan = u[0]
-    J_pan = p[0]
-    b_pan = p[1]
-    F_c_pan = p[2]
-    F_s_pan = p[3]
-    v_s_pan = p[4]
-    F_v_pan = p[5]
-    a_F_c_pan = p[6]
-    a_F_s_pan = p[7]
-    a_v_s_pan = p[8]
-    a_F_v_pan = p[9]
-    gap_pan = p[10]
-    k_shaft_pan = p[11]
-    d_shaft_pan = p[12]
-    L_pan = p[13]
-    R_pan = p[14]
-    K_t_pan = p[15]
-    J_motor_pan = p[16]
-    N_pan = p[17]
-    slide_pan = m[0]
-    side_pan = m[1]
-    active_pan = m[2]
-    dx[0] = omega_pan
-    half_gap_pan = 0.5 * gap_pan
-    shaft_torque_pan = (active_pan * (d_shaft_pan * (omega_gear_pan - omega_pan) + k_shaft_pan
-        * (-half_gap_pan * side_pan + theta_gear_pan - theta_pan)))
-    force_pan = -b_pan * omega_pan + shaft_torque_pan
-    inverse_mass_pan = 1.0 / J_pan
-    dx[1] = force_pan * inverse_mass_pan
-    dx[2] = omega_gear_pan
-    coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
-    stribeck_square_pan = ((omega_gear_pan * omega_gear_pan) / ((v_s_pan * v_s_pan) * ((a_v_s_pan
-        * slide_pan + 1.0) * (a_v_s_pan * slide_pan + 1.0))))
-    viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
-    force_gear_pan = (K_t_pan * N_pan * i_pan - shaft_torque_pan - slide_pan * (coulomb_torque_pan
-        + omega_gear_pan * slide_pan * viscous_coefficient_pan + (F_s_pan * (a_F_s_pan * slide_pan
-        + 1.0) - coulomb_torque_pan) * math.exp(-stribeck_square_pan)))
-    mass_gear_pan = J_motor_pan * (N_pan * N_pan)
-    inverse_mass_gear_pan = 1.0 / mass_gear_pan
-    dx[3] = force_gear_pan * inverse_mass_gear_pan * (slide_pan * slide_pan)
-    dx[4] = (-K_t_pan * N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
+    prepared_derivative(t, x, u, p, m, constants(p), dx)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def prepare(p, c):
-    """Write into c what prepared_derivative takes from the parameters alone.
-
-    p [18] in the units of PARAMETERS; c [3] of prepare.
-    """
-    J_pan = p[0]
-    gap_pan = p[10]
-    J_motor_pan = p[16]
-    N_pan = p[17]
-    c[0] = 0.5 * gap_pan
-    c[1] = 1.0 / J_pan
-    mass_gear_pan = J_motor_pan * (N_pan * N_pan)
-    c[2] = 1.0 / mass_gear_pan
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def prepared_derivative(t, x, u, p, m, c, dx):
-    """Write the time derivative of the state into dx in the modes m, c being prepared.
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def guards(t, x, u, p, m, g):
+    """Write holding and breakaway torques, gap separations and contact torques into g.
 
     t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
-    see MODE_NAMES; c [3] of prepare; dx [5] in STATE_UNITS per s.
+    see MODE_NAMES; g [7] in N m and rad.
     """
-    theta_pan = x[0]
-    omega_pan = x[1]
-    theta_gear_pan = x[2]
-    omega_gear_pan = x[3]
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    d_shaft_pan_shaft_torque_pan_term, shaft_torque_pan_term_2 = forces[1], forces[2]
+    shaft_torque_pan = forces[5]
     i_pan = x[4]
+    F_s_pan, a_F_s_pan, k_shaft_pan = p[3], p[7], p[11]
+    half_gap_pan, K_t_pan_N_pan = c[0], c[4]
+    g[0] = K_t_pan_N_pan * i_pan - shaft_torque_pan
+    g[1] = F_s_pan * (a_F_s_pan + 1.0)
+    g[2] = F_s_pan * (1.0 - a_F_s_pan)
+    g[3] = -shaft_torque_pan_term_2
+    g[4] = half_gap_pan
+    g[5] = (d_shaft_pan_shaft_torque_pan_term + k_shaft_pan * (-half_gap_pan
+        - shaft_torque_pan_term_2))
+    g[6] = (d_shaft_pan_shaft_torque_pan_term + k_shaft_pan * (half_gap_pan
+        - shaft_torque_pan_term_2))
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def energy(t, x, u, p, m, e):
+    """Write stored energy in J, power in and dissipated power in W into e.
+
+    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
+    see MODE_NAMES; e [3] in J, W and W.
+    """
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    shaft_torque_pan_term, d_shaft_pan_shaft_torque_pan_term = forces[0], forces[1]
+    shaft_torque_pan_term_3, k_shaft_pan_shaft_torque_pan_term_3 = forces[3], forces[4]
+    omega_gear_pan_sq, force_gear_pan_term = forces[7], forces[8]
+    omega_pan, omega_gear_pan, i_pan = x[1], x[3], x[4]
     u_pan = u[0]
-    b_pan = p[1]
-    F_c_pan = p[2]
-    F_s_pan = p[3]
-    v_s_pan = p[4]
-    F_v_pan = p[5]
-    a_F_c_pan = p[6]
-    a_F_s_pan = p[7]
-    a_v_s_pan = p[8]
-    a_F_v_pan = p[9]
-    k_shaft_pan = p[11]
-    d_shaft_pan = p[12]
-    L_pan = p[13]
-    R_pan = p[14]
-    K_t_pan = p[15]
-    N_pan = p[17]
-    slide_pan = m[0]
-    side_pan = m[1]
-    active_pan = m[2]
-    half_gap_pan = c[0]
-    inverse_mass_pan = c[1]
-    inverse_mass_gear_pan = c[2]
-    dx[0] = omega_pan
-    shaft_torque_pan = (active_pan * (d_shaft_pan * (omega_gear_pan - omega_pan) + k_shaft_pan
-        * (-half_gap_pan * side_pan + theta_gear_pan - theta_pan)))
-    force_pan = -b_pan * omega_pan + shaft_torque_pan
-    dx[1] = force_pan * inverse_mass_pan
-    dx[2] = omega_gear_pan
-    coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
-    stribeck_square_pan = ((omega_gear_pan * omega_gear_pan) / ((v_s_pan * v_s_pan) * ((a_v_s_pan
-        * slide_pan + 1.0) * (a_v_s_pan * slide_pan + 1.0))))
-    viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
-    force_gear_pan = (K_t_pan * N_pan * i_pan - shaft_torque_pan - slide_pan * (coulomb_torque_pan
-        + omega_gear_pan * slide_pan * viscous_coefficient_pan + (F_s_pan * (a_F_s_pan * slide_pan
-        + 1.0) - coulomb_torque_pan) * math.exp(-stribeck_square_pan)))
-    dx[3] = force_gear_pan * inverse_mass_gear_pan * (slide_pan * slide_pan)
-    dx[4] = (-K_t_pan * N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
+    J_pan, b_pan, k_shaft_pan, L_pan, R_pan = p[0], p[1], p[11], p[13], p[14]
+    side_pan, active_pan = m[1], m[2]
+    mass_gear_pan = c[2]
+    side_pan_sq = side_pan * side_pan
+    i_pan_sq = i_pan * i_pan
+    omega_pan_sq = omega_pan * omega_pan
+    e[0] = (0.5 * J_pan * omega_pan_sq + 0.5 * L_pan * i_pan_sq + 0.5 * k_shaft_pan
+        * (shaft_torque_pan_term_3 * shaft_torque_pan_term_3) * side_pan_sq + 0.5 * mass_gear_pan
+        * omega_gear_pan_sq)
+    e[1] = i_pan * u_pan
+    twist_rate_pan = shaft_torque_pan_term * side_pan_sq
+    winding_loss_pan = R_pan * i_pan_sq
+    e[2] = (b_pan * omega_pan_sq + force_gear_pan_term * omega_gear_pan + twist_rate_pan
+        * (active_pan * d_shaft_pan_shaft_torque_pan_term - k_shaft_pan_shaft_torque_pan_term_3
+        * (1.0 - active_pan)) + winding_loss_pan)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def equation_error(t, x, u, p, m, r):
+    """Write torques that rows lack, then rates of other states, into r; x ends in accelerations.
+
+    t in s; x [7] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
+    see MODE_NAMES; r [3] in N m, then STATE_UNITS per s.
+    """
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    force_pan, force_gear_pan, rate_of_i_pan_term = forces[6], forces[9], forces[10]
+    given_accel_pan, given_accel_gear_pan = x[5], x[6]
+    J_pan = p[0]
+    mass_gear_pan = c[2]
+    r[0] = J_pan * given_accel_pan - force_pan
+    r[1] = -force_gear_pan + given_accel_gear_pan * mass_gear_pan
+    r[2] = rate_of_i_pan_term
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     """Write the non-zero derivatives of dx into fx, fu, fp and those of guards into gx, gp.
 
     t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
     see MODE_NAMES; fx [5, 5]; fu [5, 1]; fp [5, 18]; gx [7, 5]; gp [7, 18].
     """
-    theta_pan = x[0]
-    omega_pan = x[1]
-    theta_gear_pan = x[2]
-    omega_gear_pan = x[3]
-    i_pan = x[4]
+    theta_pan, omega_pan, theta_gear_pan, omega_gear_pan, i_pan = x[0], x[1], x[2], x[3], x[4]
     u_pan = u[0]
-    J_pan = p[0]
-    b_pan = p[1]
-    F_c_pan = p[2]
-    F_s_pan = p[3]
-    v_s_pan = p[4]
-    F_v_pan = p[5]
-    a_F_c_pan = p[6]
-    a_F_s_pan = p[7]
-    a_v_s_pan = p[8]
-    a_F_v_pan = p[9]
-    gap_pan = p[10]
-    k_shaft_pan = p[11]
-    d_shaft_pan = p[12]
-    L_pan = p[13]
-    R_pan = p[14]
-    K_t_pan = p[15]
-    J_motor_pan = p[16]
-    N_pan = p[17]
-    slide_pan = m[0]
-    side_pan = m[1]
-    active_pan = m[2]
+    J_pan, b_pan, F_c_pan, F_s_pan, v_s_pan, F_v_pan = p[0], p[1], p[2], p[3], p[4], p[5]
+    a_F_c_pan, a_F_s_pan, a_v_s_pan, a_F_v_pan, gap_pan = p[6], p[7], p[8], p[9], p[10]
+    k_shaft_pan, d_shaft_pan, L_pan, R_pan, K_t_pan = p[11], p[12], p[13], p[14], p[15]
+    J_motor_pan, N_pan = p[16], p[17]
+    slide_pan, side_pan, active_pan = m[0], m[1], m[2]
     inverse_mass_pan = 1.0 / J_pan
     active_pan_k_shaft_pan = active_pan * k_shaft_pan
     accel_pan_by_theta_gear_pan = active_pan_k_shaft_pan * inverse_mass_pan
@@ -374,55 +391,19 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     gp[0, 17] = K_t_pan * i_pan
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def guards(t, x, u, p, m, g):
-    """Write holding and breakaway torques, gap separations and contact torques into g.
-
-    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
-    see MODE_NAMES; g [7] in N m and rad.
-    """
-    theta_pan = x[0]
-    omega_pan = x[1]
-    theta_gear_pan = x[2]
-    omega_gear_pan = x[3]
-    i_pan = x[4]
-    F_s_pan = p[3]
-    a_F_s_pan = p[7]
-    gap_pan = p[10]
-    k_shaft_pan = p[11]
-    d_shaft_pan = p[12]
-    K_t_pan = p[15]
-    N_pan = p[17]
-    side_pan = m[1]
-    active_pan = m[2]
-    shaft_torque_pan_term = d_shaft_pan * (omega_gear_pan - omega_pan)
-    half_gap_pan = 0.5 * gap_pan
-    shaft_torque_pan_term_2 = -theta_gear_pan + theta_pan
-    shaft_torque_pan = (active_pan * (k_shaft_pan * (-half_gap_pan * side_pan
-        - shaft_torque_pan_term_2) + shaft_torque_pan_term))
-    g[0] = K_t_pan * N_pan * i_pan - shaft_torque_pan
-    g[1] = F_s_pan * (a_F_s_pan + 1.0)
-    g[2] = F_s_pan * (1.0 - a_F_s_pan)
-    g[3] = -shaft_torque_pan_term_2
-    g[4] = half_gap_pan
-    g[5] = k_shaft_pan * (-half_gap_pan - shaft_torque_pan_term_2) + shaft_torque_pan_term
-    g[6] = k_shaft_pan * (half_gap_pan - shaft_torque_pan_term_2) + shaft_torque_pan_term
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def outputs(t, x, u, p, y):
     """Write the measured signals into y.
 
     t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; y [2] in
     OUTPUT_UNITS.
     """
-    theta_pan = x[0]
-    i_pan = x[4]
+    theta_pan, i_pan = x[0], x[4]
     y[0] = theta_pan
     y[1] = i_pan
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def output_jacobian(t, x, u, p, yx, yp):
     """Write the non-zero derivatives of outputs by state and parameter.
 
@@ -433,117 +414,7 @@ def output_jacobian(t, x, u, p, yx, yp):
     yx[1, 4] = 1.0
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def energy(t, x, u, p, m, e):
-    """Write stored energy in J, power in and dissipated power in W into e.
-
-    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
-    see MODE_NAMES; e [3] in J, W and W.
-    """
-    theta_pan = x[0]
-    omega_pan = x[1]
-    theta_gear_pan = x[2]
-    omega_gear_pan = x[3]
-    i_pan = x[4]
-    u_pan = u[0]
-    J_pan = p[0]
-    b_pan = p[1]
-    F_c_pan = p[2]
-    F_s_pan = p[3]
-    v_s_pan = p[4]
-    F_v_pan = p[5]
-    a_F_c_pan = p[6]
-    a_F_s_pan = p[7]
-    a_v_s_pan = p[8]
-    a_F_v_pan = p[9]
-    gap_pan = p[10]
-    k_shaft_pan = p[11]
-    d_shaft_pan = p[12]
-    L_pan = p[13]
-    R_pan = p[14]
-    J_motor_pan = p[16]
-    N_pan = p[17]
-    slide_pan = m[0]
-    side_pan = m[1]
-    active_pan = m[2]
-    half_gap_pan = 0.5 * gap_pan
-    stored_term = -half_gap_pan * side_pan + theta_gear_pan - theta_pan
-    omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
-    side_pan_sq = side_pan * side_pan
-    i_pan_sq = i_pan * i_pan
-    omega_pan_sq = omega_pan * omega_pan
-    e[0] = (0.5 * J_motor_pan * (N_pan * N_pan) * omega_gear_pan_sq + 0.5 * J_pan * omega_pan_sq
-        + 0.5 * L_pan * i_pan_sq + 0.5 * k_shaft_pan * side_pan_sq * (stored_term * stored_term))
-    e[1] = i_pan * u_pan
-    coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
-    twist_rate_pan_term = omega_gear_pan - omega_pan
-    omega_gear_pan_slide_pan = omega_gear_pan * slide_pan
-    stribeck_square_pan = (omega_gear_pan_sq / ((v_s_pan * v_s_pan) * ((a_v_s_pan * slide_pan + 1.0)
-        * (a_v_s_pan * slide_pan + 1.0))))
-    twist_rate_pan = side_pan_sq * twist_rate_pan_term
-    viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
-    winding_loss_pan = R_pan * i_pan_sq
-    e[2] = (b_pan * omega_pan_sq + omega_gear_pan_slide_pan * (coulomb_torque_pan
-        + omega_gear_pan_slide_pan * viscous_coefficient_pan + (F_s_pan * (a_F_s_pan * slide_pan
-        + 1.0) - coulomb_torque_pan) * math.exp(-stribeck_square_pan)) + twist_rate_pan
-        * (active_pan * d_shaft_pan * twist_rate_pan_term - k_shaft_pan * stored_term * (1.0
-        - active_pan)) + winding_loss_pan)
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def equation_error(t, x, u, p, m, r):
-    """Write the torque that every row lacks, then rates of other states into r; x ends in accel.
-
-    t in s; x [7] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
-    see MODE_NAMES; r [3] in N m, then STATE_UNITS per s.
-    """
-    theta_pan = x[0]
-    omega_pan = x[1]
-    theta_gear_pan = x[2]
-    omega_gear_pan = x[3]
-    i_pan = x[4]
-    accel_pan = x[5]
-    accel_gear_pan = x[6]
-    u_pan = u[0]
-    J_pan = p[0]
-    b_pan = p[1]
-    F_c_pan = p[2]
-    F_s_pan = p[3]
-    v_s_pan = p[4]
-    F_v_pan = p[5]
-    a_F_c_pan = p[6]
-    a_F_s_pan = p[7]
-    a_v_s_pan = p[8]
-    a_F_v_pan = p[9]
-    gap_pan = p[10]
-    k_shaft_pan = p[11]
-    d_shaft_pan = p[12]
-    L_pan = p[13]
-    R_pan = p[14]
-    K_t_pan = p[15]
-    J_motor_pan = p[16]
-    N_pan = p[17]
-    slide_pan = m[0]
-    side_pan = m[1]
-    active_pan = m[2]
-    half_gap_pan = 0.5 * gap_pan
-    shaft_torque_pan = (active_pan * (d_shaft_pan * (omega_gear_pan - omega_pan) + k_shaft_pan
-        * (-half_gap_pan * side_pan + theta_gear_pan - theta_pan)))
-    force_pan = -b_pan * omega_pan + shaft_torque_pan
-    r[0] = J_pan * accel_pan - force_pan
-    coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
-    stribeck_square_pan = ((omega_gear_pan * omega_gear_pan) / ((v_s_pan * v_s_pan) * ((a_v_s_pan
-        * slide_pan + 1.0) * (a_v_s_pan * slide_pan + 1.0))))
-    viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
-    force_gear_pan = (K_t_pan * N_pan * i_pan - shaft_torque_pan - slide_pan * (coulomb_torque_pan
-        + omega_gear_pan * slide_pan * viscous_coefficient_pan + (F_s_pan * (a_F_s_pan * slide_pan
-        + 1.0) - coulomb_torque_pan) * math.exp(-stribeck_square_pan)))
-    mass_gear_pan = J_motor_pan * (N_pan * N_pan)
-    r[1] = accel_gear_pan * mass_gear_pan - force_gear_pan
-    r[2] = (-K_t_pan * N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def domain(p, bounds):
     """Write lower and upper bound of the state of every row of DOMAIN into bounds.
 
@@ -552,14 +423,13 @@ def domain(p, bounds):
     return
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def margins(p, margin):
     """Write by how much the parameters meet every row of REQUIREMENTS into margin.
 
     p [18] in the units of PARAMETERS; margin [1] in units of what is compared.
     """
-    F_c_pan = p[2]
-    F_s_pan = p[3]
+    F_c_pan, F_s_pan = p[2], p[3]
     margin[0] = -F_c_pan + F_s_pan
 
 
@@ -654,4 +524,4 @@ EFFECTS = (
     ("dc_motor", "pan", ("L_pan", "R_pan", "K_t_pan", "J_motor_pan", "N_pan"), (), (),
      "geared DC motor", "thesis Eq. 3.10, Eq. 3.11 with erratum 8", "", False),
 )
-# END sha256 8cebb76ea5c707984091f4651a83d6285175de68893ab1af7b070b5bbab5e577
+# END sha256 88cc51919a9217f3f7d77f91343ba8e23ac8cd1289dcc2c4398592fd78e84d45

@@ -43,7 +43,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "44fdd001ab73ea0b"
+MODEL_HASH = "815ca919cb818d6a"
 NAME = "payload"
 TITLE = "Pan-tilt platform of the thesis with its payload"
 # How many numbers `prepare` writes.
@@ -90,165 +90,152 @@ PARAMETERS = (
 )
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def mode_derivative(t, x, u, p, m, dx):
-    """Write the time derivative of the state into dx in the modes m.
-
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
-    see MODE_NAMES; dx [4] in STATE_UNITS per s.
-    """
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    tau_pan = u[0]
-    tau_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    b_pan = p[11]
-    b_tilt = p[12]
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def constants(p):
+    """Return what depends on the parameters alone."""
+    J_pan, J_x_tilt, J_y_tilt, J_z_tilt, m_payload, J_x_payload = p[0], p[1], p[2], p[3], p[4], p[5]
+    J_y_payload, J_z_payload, c_x_payload, c_y_payload, c_z_payload = p[6], p[7], p[8], p[9], p[10]
     gravity = p[13]
-    dx[0] = omega_pan
-    dx[1] = omega_tilt
-    cos_tilt = math.cos(theta_tilt)
     inertia_pan_sin_cos_tilt = 2.0 * c_x_payload * c_z_payload * m_payload
     inertia_pan_sin_sq_tilt_term = (c_z_payload * c_z_payload) * m_payload
     inertia_pan_sin_sq_tilt_term_2 = (c_x_payload * c_x_payload) * m_payload
     inertia_pan_sin_sq_tilt = (J_x_payload + J_x_tilt - J_z_payload - J_z_tilt
         + inertia_pan_sin_sq_tilt_term - inertia_pan_sin_sq_tilt_term_2)
-    sin_tilt = math.sin(theta_tilt)
-    inertia_pan_per_sin_tilt = (cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt
-        * sin_tilt)
-    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
     c_y_payload_m_payload = c_y_payload * m_payload
     coupling_cos_tilt = c_y_payload_m_payload * c_z_payload
     coupling_sin_tilt = c_x_payload * c_y_payload_m_payload
-    force_pan = (-b_pan * omega_pan - omega_tilt * (coriolis + omega_tilt * (cos_tilt
-        * coupling_sin_tilt + coupling_cos_tilt * sin_tilt)) + tau_pan)
     gravity_m_payload = gravity * m_payload
     gravity_cos_tilt = c_x_payload * gravity_m_payload
     gravity_sin_tilt = c_z_payload * gravity_m_payload
-    force_tilt = (-b_tilt * omega_tilt + 0.5 * coriolis * omega_pan + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt + tau_tilt)
     inertia_tilt = (J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term
         + inertia_pan_sin_sq_tilt_term_2)
     inertia_pan = (J_pan + J_z_payload + J_z_tilt + (c_y_payload * c_y_payload) * m_payload
         + inertia_pan_sin_sq_tilt_term_2)
+    return (inertia_pan_sin_cos_tilt, inertia_pan_sin_sq_tilt, coupling_cos_tilt, coupling_sin_tilt,
+        gravity_cos_tilt, gravity_sin_tilt, inertia_tilt, inertia_pan)
+
+
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def mass_and_forces(t, x, u, p, m, c):
+    """Return mass matrix, forces and what else the functions below have in common."""
+    theta_tilt, omega_pan, omega_tilt = x[1], x[2], x[3]
+    tau_pan, tau_tilt = u[0], u[1]
+    b_pan, b_tilt = p[11], p[12]
+    inertia_pan_sin_cos_tilt, inertia_pan_sin_sq_tilt, coupling_cos_tilt = c[0], c[1], c[2]
+    coupling_sin_tilt, gravity_cos_tilt, gravity_sin_tilt, inertia_pan = c[3], c[4], c[5], c[7]
+    cos_tilt = math.cos(theta_tilt)
+    sin_tilt = math.sin(theta_tilt)
+    inertia_pan_per_sin_tilt = (cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt
+        * sin_tilt)
+    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
+    force_pan = (-b_pan * omega_pan - omega_tilt * (coriolis + omega_tilt * (cos_tilt
+        * coupling_sin_tilt + coupling_cos_tilt * sin_tilt)) + tau_pan)
+    force_tilt = (-b_tilt * omega_tilt + 0.5 * coriolis * omega_pan + cos_tilt * gravity_cos_tilt
+        + gravity_sin_tilt * sin_tilt + tau_tilt)
     mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
     mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
-    inverse_determinant = 1.0 / (inertia_tilt * mass_pan - (mass_pan_tilt * mass_pan_tilt))
-    dx[2] = inverse_determinant * (force_pan * inertia_tilt - force_tilt * mass_pan_tilt)
-    dx[3] = inverse_determinant * (-force_pan * mass_pan_tilt + force_tilt * mass_pan)
+    return (cos_tilt, sin_tilt, force_pan, force_tilt, mass_pan, mass_pan_tilt)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def prepare(p, c):
     """Write into c what prepared_derivative takes from the parameters alone.
 
     p [14] in the units of PARAMETERS; c [8] of prepare.
     """
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    gravity = p[13]
-    c[0] = 2.0 * c_x_payload * c_z_payload * m_payload
-    inertia_pan_sin_sq_tilt_term = (c_z_payload * c_z_payload) * m_payload
-    inertia_pan_sin_sq_tilt_term_2 = (c_x_payload * c_x_payload) * m_payload
-    c[1] = (J_x_payload + J_x_tilt - J_z_payload - J_z_tilt + inertia_pan_sin_sq_tilt_term
-        - inertia_pan_sin_sq_tilt_term_2)
-    c_y_payload_m_payload = c_y_payload * m_payload
-    c[2] = c_y_payload_m_payload * c_z_payload
-    c[3] = c_x_payload * c_y_payload_m_payload
-    gravity_m_payload = gravity * m_payload
-    c[4] = c_x_payload * gravity_m_payload
-    c[5] = c_z_payload * gravity_m_payload
-    c[6] = J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term + inertia_pan_sin_sq_tilt_term_2
-    c[7] = (J_pan + J_z_payload + J_z_tilt + (c_y_payload * c_y_payload) * m_payload
-        + inertia_pan_sin_sq_tilt_term_2)
+    values = constants(p)
+    for k in range(PREPARED):
+        c[k] = values[k]
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def prepared_derivative(t, x, u, p, m, c, dx):
     """Write the time derivative of the state into dx in the modes m, c being prepared.
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
     see MODE_NAMES; c [8] of prepare; dx [4] in STATE_UNITS per s.
     """
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    tau_pan = u[0]
-    tau_tilt = u[1]
-    b_pan = p[11]
-    b_tilt = p[12]
-    inertia_pan_sin_cos_tilt = c[0]
-    inertia_pan_sin_sq_tilt = c[1]
-    coupling_cos_tilt = c[2]
-    coupling_sin_tilt = c[3]
-    gravity_cos_tilt = c[4]
-    gravity_sin_tilt = c[5]
+    forces = mass_and_forces(t, x, u, p, m, c)
+    force_pan, force_tilt, mass_pan, mass_pan_tilt = forces[2], forces[3], forces[4], forces[5]
+    omega_pan, omega_tilt = x[2], x[3]
     inertia_tilt = c[6]
-    inertia_pan = c[7]
     dx[0] = omega_pan
     dx[1] = omega_tilt
-    cos_tilt = math.cos(theta_tilt)
-    sin_tilt = math.sin(theta_tilt)
-    inertia_pan_per_sin_tilt = (cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt
-        * sin_tilt)
-    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
-    force_pan = (-b_pan * omega_pan - omega_tilt * (coriolis + omega_tilt * (cos_tilt
-        * coupling_sin_tilt + coupling_cos_tilt * sin_tilt)) + tau_pan)
-    force_tilt = (-b_tilt * omega_tilt + 0.5 * coriolis * omega_pan + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt + tau_tilt)
-    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
-    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
     inverse_determinant = 1.0 / (inertia_tilt * mass_pan - (mass_pan_tilt * mass_pan_tilt))
     dx[2] = inverse_determinant * (force_pan * inertia_tilt - force_tilt * mass_pan_tilt)
     dx[3] = inverse_determinant * (-force_pan * mass_pan_tilt + force_tilt * mass_pan)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def mode_derivative(t, x, u, p, m, dx):
+    """Write the time derivative of the state into dx in the modes m.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
+    see MODE_NAMES; dx [4] in STATE_UNITS per s.
+    """
+    prepared_derivative(t, x, u, p, m, constants(p), dx)
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def guards(t, x, u, p, m, g):
+    """Write holding and breakaway torques, gap separations and contact torques into g.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
+    see MODE_NAMES; g [0] in N m and rad.
+    """
+    return
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def energy(t, x, u, p, m, e):
+    """Write stored energy in J, power in and dissipated power in W into e.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
+    see MODE_NAMES; e [3] in J, W and W.
+    """
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    cos_tilt, sin_tilt, mass_pan, mass_pan_tilt = forces[0], forces[1], forces[4], forces[5]
+    omega_pan, omega_tilt = x[2], x[3]
+    tau_pan, tau_tilt = u[0], u[1]
+    b_pan, b_tilt = p[11], p[12]
+    gravity_cos_tilt, gravity_sin_tilt, inertia_tilt = c[4], c[5], c[6]
+    omega_tilt_sq = omega_tilt * omega_tilt
+    omega_pan_sq = omega_pan * omega_pan
+    e[0] = (cos_tilt * gravity_sin_tilt - gravity_cos_tilt * sin_tilt + 0.5 * inertia_tilt
+        * omega_tilt_sq + 0.5 * mass_pan * omega_pan_sq + mass_pan_tilt * omega_pan * omega_tilt)
+    e[1] = omega_pan * tau_pan + omega_tilt * tau_tilt
+    e[2] = b_pan * omega_pan_sq + b_tilt * omega_tilt_sq
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def equation_error(t, x, u, p, m, r):
+    """Write torques that rows lack, then rates of other states, into r; x ends in accelerations.
+
+    t in s; x [6] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
+    see MODE_NAMES; r [2] in N m, then STATE_UNITS per s.
+    """
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    force_pan, force_tilt, mass_pan, mass_pan_tilt = forces[2], forces[3], forces[4], forces[5]
+    given_accel_pan, given_accel_tilt = x[4], x[5]
+    inertia_tilt = c[6]
+    r[0] = -force_pan + given_accel_pan * mass_pan + given_accel_tilt * mass_pan_tilt
+    r[1] = -force_tilt + given_accel_pan * mass_pan_tilt + given_accel_tilt * inertia_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     """Write the non-zero derivatives of dx into fx, fu, fp and those of guards into gx, gp.
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
     see MODE_NAMES; fx [4, 4]; fu [4, 2]; fp [4, 14]; gx [0, 4]; gp [0, 14].
     """
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    tau_pan = u[0]
-    tau_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    b_pan = p[11]
-    b_tilt = p[12]
-    gravity = p[13]
+    theta_tilt, omega_pan, omega_tilt = x[1], x[2], x[3]
+    tau_pan, tau_tilt = u[0], u[1]
+    J_pan, J_x_tilt, J_y_tilt, J_z_tilt, m_payload, J_x_payload = p[0], p[1], p[2], p[3], p[4], p[5]
+    J_y_payload, J_z_payload, c_x_payload, c_y_payload, c_z_payload = p[6], p[7], p[8], p[9], p[10]
+    b_pan, b_tilt, gravity = p[11], p[12], p[13]
     c_z_payload_sq = c_z_payload * c_z_payload
     c_z_payload_sq_m_payload = c_z_payload_sq * m_payload
     c_x_payload_sq = c_x_payload * c_x_payload
@@ -446,30 +433,19 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + accel_tilt_by_gravity_sin_tilt * gravity_sin_tilt_by_gravity)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def guards(t, x, u, p, m, g):
-    """Write holding and breakaway torques, gap separations and contact torques into g.
-
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
-    see MODE_NAMES; g [0] in N m and rad.
-    """
-    return
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def outputs(t, x, u, p, y):
     """Write the measured signals into y.
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; y [2] in
     OUTPUT_UNITS.
     """
-    theta_pan = x[0]
-    theta_tilt = x[1]
+    theta_pan, theta_tilt = x[0], x[1]
     y[0] = theta_pan
     y[1] = theta_tilt
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def output_jacobian(t, x, u, p, yx, yp):
     """Write the non-zero derivatives of outputs by state and parameter.
 
@@ -480,124 +456,7 @@ def output_jacobian(t, x, u, p, yx, yp):
     yx[1, 1] = 1.0
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def energy(t, x, u, p, m, e):
-    """Write stored energy in J, power in and dissipated power in W into e.
-
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
-    see MODE_NAMES; e [3] in J, W and W.
-    """
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    tau_pan = u[0]
-    tau_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    b_pan = p[11]
-    b_tilt = p[12]
-    gravity = p[13]
-    omega_pan_sq = omega_pan * omega_pan
-    half_omega_pan_sq = 0.5 * omega_pan_sq
-    omega_tilt_sq = omega_tilt * omega_tilt
-    half_omega_tilt_sq = 0.5 * omega_tilt_sq
-    gravity_m_payload = gravity * m_payload
-    cos_tilt = math.cos(theta_tilt)
-    c_z_payload_cos_tilt = c_z_payload * cos_tilt
-    sin_tilt = math.sin(theta_tilt)
-    c_x_payload_sin_tilt = c_x_payload * sin_tilt
-    c_x_payload_sin_tilt_m_payload = c_x_payload_sin_tilt * m_payload
-    c_y_payload_omega_pan_omega_tilt = c_y_payload * omega_pan * omega_tilt
-    c_x_payload_sq = c_x_payload * c_x_payload
-    half_omega_tilt_sq_m_payload = half_omega_tilt_sq * m_payload
-    c_z_payload_sq = c_z_payload * c_z_payload
-    stored_term = half_omega_pan_sq * (sin_tilt * sin_tilt)
-    stored_term_2 = (cos_tilt * cos_tilt) * half_omega_pan_sq
-    m_payload_stored_term_2 = m_payload * stored_term_2
-    c_y_payload_sq = c_y_payload * c_y_payload
-    m_payload_stored_term = m_payload * stored_term
-    e[0] = (J_pan * half_omega_pan_sq + J_x_payload * stored_term + J_x_tilt * stored_term
-        + J_y_payload * half_omega_tilt_sq + J_y_tilt * half_omega_tilt_sq + J_z_payload
-        * stored_term_2 + J_z_tilt * stored_term_2 - c_x_payload_sin_tilt * gravity_m_payload
-        + c_x_payload_sin_tilt_m_payload * c_y_payload_omega_pan_omega_tilt
-        + c_x_payload_sin_tilt_m_payload * c_z_payload_cos_tilt * omega_pan_sq + c_x_payload_sq
-        * half_omega_tilt_sq_m_payload + c_x_payload_sq * m_payload_stored_term_2
-        - c_y_payload_omega_pan_omega_tilt * c_z_payload_cos_tilt * m_payload + c_y_payload_sq
-        * m_payload_stored_term + c_y_payload_sq * m_payload_stored_term_2 + c_z_payload_cos_tilt
-        * gravity_m_payload + c_z_payload_sq * half_omega_tilt_sq_m_payload + c_z_payload_sq
-        * m_payload_stored_term)
-    e[1] = omega_pan * tau_pan + omega_tilt * tau_tilt
-    e[2] = b_pan * omega_pan_sq + b_tilt * omega_tilt_sq
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def equation_error(t, x, u, p, m, r):
-    """Write the torque that every row lacks, then rates of other states into r; x ends in accel.
-
-    t in s; x [6] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
-    see MODE_NAMES; r [2] in N m, then STATE_UNITS per s.
-    """
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    accel_pan = x[4]
-    accel_tilt = x[5]
-    tau_pan = u[0]
-    tau_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    b_pan = p[11]
-    b_tilt = p[12]
-    gravity = p[13]
-    cos_tilt = math.cos(theta_tilt)
-    inertia_pan_sin_cos_tilt = 2.0 * c_x_payload * c_z_payload * m_payload
-    inertia_pan_sin_sq_tilt_term = (c_z_payload * c_z_payload) * m_payload
-    inertia_pan_sin_sq_tilt_term_2 = (c_x_payload * c_x_payload) * m_payload
-    inertia_pan_sin_sq_tilt = (J_x_payload + J_x_tilt - J_z_payload - J_z_tilt
-        + inertia_pan_sin_sq_tilt_term - inertia_pan_sin_sq_tilt_term_2)
-    sin_tilt = math.sin(theta_tilt)
-    inertia_pan_per_sin_tilt = (cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt
-        * sin_tilt)
-    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
-    c_y_payload_m_payload = c_y_payload * m_payload
-    coupling_cos_tilt = c_y_payload_m_payload * c_z_payload
-    coupling_sin_tilt = c_x_payload * c_y_payload_m_payload
-    force_pan = (-b_pan * omega_pan - omega_tilt * (coriolis + omega_tilt * (cos_tilt
-        * coupling_sin_tilt + coupling_cos_tilt * sin_tilt)) + tau_pan)
-    inertia_pan = (J_pan + J_z_payload + J_z_tilt + (c_y_payload * c_y_payload) * m_payload
-        + inertia_pan_sin_sq_tilt_term_2)
-    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
-    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
-    r[0] = accel_pan * mass_pan + accel_tilt * mass_pan_tilt - force_pan
-    gravity_m_payload = gravity * m_payload
-    gravity_cos_tilt = c_x_payload * gravity_m_payload
-    gravity_sin_tilt = c_z_payload * gravity_m_payload
-    force_tilt = (-b_tilt * omega_tilt + 0.5 * coriolis * omega_pan + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt + tau_tilt)
-    inertia_tilt = (J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term
-        + inertia_pan_sin_sq_tilt_term_2)
-    r[1] = accel_pan * mass_pan_tilt + accel_tilt * inertia_tilt - force_tilt
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def domain(p, bounds):
     """Write lower and upper bound of the state of every row of DOMAIN into bounds.
 
@@ -606,7 +465,7 @@ def domain(p, bounds):
     return
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def margins(p, margin):
     """Write by how much the parameters meet every row of REQUIREMENTS into margin.
 
@@ -650,4 +509,4 @@ EFFECTS = (
      "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
      "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
 )
-# END sha256 6636f1736ea277ff45ace2e7862cd5dcfb836c166446479cd646b062f070f134
+# END sha256 e48c8c42aff75f3b7ba62f8fc857b1b9406e5aa0de1e965947eb746726e18061

@@ -60,11 +60,11 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "a31ce6b722af0766"
+MODEL_HASH = "c913873ebb303df6"
 NAME = "tilt_drive"
 TITLE = "Tilt drive of the thesis"
 # How many numbers `prepare` writes.
-PREPARED = 9
+PREPARED = 10
 AXES = ("tilt",)
 STATE_NAMES = ("theta_tilt", "omega_tilt", "i_tilt")
 STATE_UNITS = ("rad", "rad/s", "A")
@@ -116,233 +116,202 @@ PARAMETERS = (
 )
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def constants(p):
+    """Return what depends on the parameters alone."""
+    m_payload, J_y_payload, c_x_payload, c_z_payload, lead_tilt = p[0], p[1], p[2], p[3], p[11]
+    d_screw_tilt, f_screw_tilt, l_ground_tilt, l_min_tilt = p[12], p[13], p[14], p[15]
+    r_arm_tilt, s_start_tilt, gravity = p[16], p[17], p[19]
+    gravity_m_payload = gravity * m_payload
+    gravity_cos_tilt = c_x_payload * gravity_m_payload
+    gravity_sin_tilt = c_z_payload * gravity_m_payload
+    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
+    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
+    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
+    linkage_cos_tilt = (l_ground_tilt_sq_plus_r_arm_tilt_sq - ((l_min_tilt + s_start_tilt)
+        * (l_min_tilt + s_start_tilt)))
+    linkage_sin_tilt = (math.sqrt(4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt
+        * linkage_cos_tilt)))
+    lead_tilt_inverse = 1.0 / lead_tilt
+    inertia_tilt = (J_y_payload + (c_x_payload * c_x_payload) * m_payload + (c_z_payload
+        * c_z_payload) * m_payload)
+    lowered_tilt_term = math.pi * d_screw_tilt
+    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
+    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
+    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
+    lowered_tilt = (-lead_tilt_inverse_lowered_tilt_term * (f_screw_tilt_lowered_tilt_term
+        - lead_tilt) / (f_screw_tilt_lead_tilt + lowered_tilt_term))
+    raised_tilt = (lead_tilt_inverse_lowered_tilt_term * (f_screw_tilt_lowered_tilt_term
+        + lead_tilt) / (-f_screw_tilt_lead_tilt + lowered_tilt_term))
+    forward_tilt_term_3 = -lowered_tilt + raised_tilt
+    return (gravity_cos_tilt, gravity_sin_tilt, l_ground_tilt_sq_plus_r_arm_tilt_sq,
+        linkage_cos_tilt, linkage_sin_tilt, lead_tilt_inverse, inertia_tilt, lowered_tilt,
+        raised_tilt, forward_tilt_term_3)
+
+
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def mass_and_forces(t, x, u, p, m, c):
+    """Return mass matrix, forces and what else the functions below have in common."""
+    theta_tilt, omega_tilt, i_tilt = x[0], x[1], x[2]
+    u_tilt = u[0]
+    b_tilt, L_tilt, R_tilt, K_t_tilt, J_motor_tilt = p[4], p[5], p[6], p[7], p[8]
+    b_motor_tilt, N_tilt = p[9], p[10]
+    slide_tilt = m[0]
+    gravity_cos_tilt, gravity_sin_tilt, l_ground_tilt_sq_plus_r_arm_tilt_sq = c[0], c[1], c[2]
+    linkage_cos_tilt, linkage_sin_tilt, lead_tilt_inverse, inertia_tilt = c[3], c[4], c[5], c[6]
+    lowered_tilt, raised_tilt = c[7], c[8]
+    cos_tilt = math.cos(theta_tilt)
+    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
+    sin_tilt = math.sin(theta_tilt)
+    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
+    length_tilt = (math.sqrt(-cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq
+        - linkage_sin_tilt_sin_tilt))
+    ratio_tilt_term = math.pi * N_tilt * lead_tilt_inverse / length_tilt
+    ratio_tilt_term_2 = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
+    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
+    length_tilt_by_theta_tilt = 0.5 * ratio_tilt_term_2 / length_tilt
+    ratio_tilt_by_theta_tilt = (-math.pi * N_tilt * lead_tilt_inverse * length_tilt_by_theta_tilt
+        * ratio_tilt_term_2 / (length_tilt * length_tilt) + ratio_tilt_term
+        * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt))
+    omega_tilt_sq = omega_tilt * omega_tilt
+    carried_tilt_term = J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
+    omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
+    carried_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
+    carried_tilt_term_3 = carried_tilt_term - carried_tilt_term_2 * ratio_tilt
+    b_tilt_omega_tilt = b_tilt * omega_tilt
+    ratio_tilt_sq = ratio_tilt * ratio_tilt
+    J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
+    lost_lowering_tilt = ((1.0 - lowered_tilt) / abs(J_motor_tilt_ratio_tilt_sq + inertia_tilt
+        * lowered_tilt))
+    lost_raising_tilt = ((raised_tilt - 1.0) / (J_motor_tilt_ratio_tilt_sq + inertia_tilt
+        * raised_tilt))
+    load_torque_tilt = (-b_tilt_omega_tilt + cos_tilt * gravity_cos_tilt + gravity_sin_tilt
+        * sin_tilt)
+    carried_tilt = (-J_motor_tilt_ratio_tilt_sq * load_torque_tilt - carried_tilt_term_3
+        * inertia_tilt)
+    carried_tilt_slide_tilt = carried_tilt * slide_tilt
+    force_tilt_term = (slide_tilt * (0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt
+        + lost_raising_tilt) + 0.5 * (lost_lowering_tilt + lost_raising_tilt)
+        * abs(carried_tilt_slide_tilt)))
+    force_tilt = (-b_tilt_omega_tilt - carried_tilt_term_3 + cos_tilt * gravity_cos_tilt
+        - force_tilt_term + gravity_sin_tilt * sin_tilt)
+    mass_tilt = J_motor_tilt_ratio_tilt_sq + inertia_tilt
+    rate_of_i_tilt_term = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
+    return (cos_tilt, sin_tilt, ratio_tilt, omega_tilt_sq, carried_tilt_term, carried_tilt_term_2,
+        ratio_tilt_sq, load_torque_tilt, force_tilt_term, force_tilt, mass_tilt,
+        rate_of_i_tilt_term)
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def prepare(p, c):
+    """Write into c what prepared_derivative takes from the parameters alone.
+
+    p [20] in the units of PARAMETERS; c [10] of prepare.
+    """
+    values = constants(p)
+    for k in range(PREPARED):
+        c[k] = values[k]
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def prepared_derivative(t, x, u, p, m, c, dx):
+    """Write the time derivative of the state into dx in the modes m, c being prepared.
+
+    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
+    see MODE_NAMES; c [10] of prepare; dx [3] in STATE_UNITS per s.
+    """
+    forces = mass_and_forces(t, x, u, p, m, c)
+    force_tilt, mass_tilt, rate_of_i_tilt_term = forces[9], forces[10], forces[11]
+    omega_tilt = x[1]
+    slide_tilt = m[0]
+    dx[0] = omega_tilt
+    inverse_mass_tilt = 1.0 / mass_tilt
+    dx[1] = force_tilt * inverse_mass_tilt * (slide_tilt * slide_tilt)
+    dx[2] = rate_of_i_tilt_term
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def mode_derivative(t, x, u, p, m, dx):
     """Write the time derivative of the state into dx in the modes m.
 
     t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
     see MODE_NAMES; dx [3] in STATE_UNITS per s.
     """
-    theta_tilt = x[0]
-    omega_tilt = x[1]
-    i_tilt = x[2]
-    u_tilt = u[0]
-    m_payload = p[0]
-    J_y_payload = p[1]
-    c_x_payload = p[2]
-    c_z_payload = p[3]
-    b_tilt = p[4]
-    L_tilt = p[5]
-    R_tilt = p[6]
-    K_t_tilt = p[7]
-    J_motor_tilt = p[8]
-    b_motor_tilt = p[9]
-    N_tilt = p[10]
-    lead_tilt = p[11]
-    d_screw_tilt = p[12]
-    f_screw_tilt = p[13]
-    l_ground_tilt = p[14]
-    l_min_tilt = p[15]
-    r_arm_tilt = p[16]
-    s_start_tilt = p[17]
-    gravity = p[19]
-    slide_tilt = m[0]
-    dx[0] = omega_tilt
-    cos_tilt = math.cos(theta_tilt)
-    gravity_m_payload = gravity * m_payload
-    gravity_cos_tilt = c_x_payload * gravity_m_payload
-    gravity_sin_tilt = c_z_payload * gravity_m_payload
-    inertia_tilt = (J_y_payload + (c_x_payload * c_x_payload) * m_payload + (c_z_payload
-        * c_z_payload) * m_payload)
-    lowered_tilt_term = math.pi * d_screw_tilt
-    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
-    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
-    lead_tilt_inverse = 1.0 / lead_tilt
-    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
-    lowered_tilt = (-lead_tilt_inverse_lowered_tilt_term * (f_screw_tilt_lowered_tilt_term
-        - lead_tilt) / (f_screw_tilt_lead_tilt + lowered_tilt_term))
-    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
-    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
-    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
-    linkage_cos_tilt = (l_ground_tilt_sq_plus_r_arm_tilt_sq - ((l_min_tilt + s_start_tilt)
-        * (l_min_tilt + s_start_tilt)))
-    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
-    linkage_sin_tilt = (math.sqrt(4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt
-        * linkage_cos_tilt)))
-    sin_tilt = math.sin(theta_tilt)
-    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt = (math.sqrt(-cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq
-        - linkage_sin_tilt_sin_tilt))
-    ratio_tilt_term = math.pi * N_tilt * lead_tilt_inverse / length_tilt
-    ratio_tilt_term_2 = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
-    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
-    lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
-    lost_lowering_tilt = ((1.0 - lowered_tilt) / abs(inertia_tilt * lowered_tilt
-        + lost_lowering_tilt_term))
-    raised_tilt = (lead_tilt_inverse_lowered_tilt_term * (f_screw_tilt_lowered_tilt_term
-        + lead_tilt) / (-f_screw_tilt_lead_tilt + lowered_tilt_term))
-    lost_raising_tilt = (raised_tilt - 1.0) / (inertia_tilt * raised_tilt + lost_lowering_tilt_term)
-    length_tilt_by_theta_tilt = 0.5 * ratio_tilt_term_2 / length_tilt
-    ratio_tilt_by_theta_tilt = (-math.pi * N_tilt * lead_tilt_inverse * length_tilt_by_theta_tilt
-        * ratio_tilt_term_2 / (length_tilt * length_tilt) + ratio_tilt_term
-        * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt))
-    omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
-    carried_tilt_term = (J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt
-        * ratio_tilt_by_theta_tilt - ratio_tilt * (K_t_tilt * i_tilt - b_motor_tilt
-        * omega_tilt_ratio_tilt))
-    b_tilt_omega_tilt = b_tilt * omega_tilt
-    load_torque_tilt = (-b_tilt_omega_tilt + cos_tilt * gravity_cos_tilt + gravity_sin_tilt
-        * sin_tilt)
-    carried_tilt = -carried_tilt_term * inertia_tilt - load_torque_tilt * lost_lowering_tilt_term
-    carried_tilt_slide_tilt = carried_tilt * slide_tilt
-    force_tilt = (-b_tilt_omega_tilt - carried_tilt_term + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt - slide_tilt * (0.5 * carried_tilt_slide_tilt
-        * (-lost_lowering_tilt + lost_raising_tilt) + 0.5 * (lost_lowering_tilt + lost_raising_tilt)
-        * abs(carried_tilt_slide_tilt)))
-    mass_tilt = inertia_tilt + lost_lowering_tilt_term
-    inverse_mass_tilt = 1.0 / mass_tilt
-    dx[1] = force_tilt * inverse_mass_tilt * (slide_tilt * slide_tilt)
-    dx[2] = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
+    prepared_derivative(t, x, u, p, m, constants(p), dx)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def prepare(p, c):
-    """Write into c what prepared_derivative takes from the parameters alone.
-
-    p [20] in the units of PARAMETERS; c [9] of prepare.
-    """
-    m_payload = p[0]
-    J_y_payload = p[1]
-    c_x_payload = p[2]
-    c_z_payload = p[3]
-    lead_tilt = p[11]
-    d_screw_tilt = p[12]
-    f_screw_tilt = p[13]
-    l_ground_tilt = p[14]
-    l_min_tilt = p[15]
-    r_arm_tilt = p[16]
-    s_start_tilt = p[17]
-    gravity = p[19]
-    gravity_m_payload = gravity * m_payload
-    c[0] = c_x_payload * gravity_m_payload
-    c[1] = c_z_payload * gravity_m_payload
-    c[2] = (J_y_payload + (c_x_payload * c_x_payload) * m_payload + (c_z_payload * c_z_payload)
-        * m_payload)
-    lowered_tilt_term = math.pi * d_screw_tilt
-    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
-    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
-    lead_tilt_inverse = 1.0 / lead_tilt
-    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
-    c[4] = (-lead_tilt_inverse_lowered_tilt_term * (f_screw_tilt_lowered_tilt_term - lead_tilt)
-        / (f_screw_tilt_lead_tilt + lowered_tilt_term))
-    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
-    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
-    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
-    linkage_cos_tilt = (l_ground_tilt_sq_plus_r_arm_tilt_sq - ((l_min_tilt + s_start_tilt)
-        * (l_min_tilt + s_start_tilt)))
-    c[7] = math.sqrt(4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt * linkage_cos_tilt))
-    c[8] = (lead_tilt_inverse_lowered_tilt_term * (f_screw_tilt_lowered_tilt_term + lead_tilt)
-        / (-f_screw_tilt_lead_tilt + lowered_tilt_term))
-    c[3] = lead_tilt_inverse
-    c[5] = l_ground_tilt_sq_plus_r_arm_tilt_sq
-    c[6] = linkage_cos_tilt
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def prepared_derivative(t, x, u, p, m, c, dx):
-    """Write the time derivative of the state into dx in the modes m, c being prepared.
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def guards(t, x, u, p, m, g):
+    """Write holding and breakaway torques, gap separations and contact torques into g.
 
     t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
-    see MODE_NAMES; c [9] of prepare; dx [3] in STATE_UNITS per s.
+    see MODE_NAMES; g [3] in N m and rad.
     """
-    theta_tilt = x[0]
-    omega_tilt = x[1]
-    i_tilt = x[2]
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    ratio_tilt, carried_tilt_term, carried_tilt_term_2 = forces[2], forces[4], forces[5]
+    load_torque_tilt = forces[7]
+    lowered_tilt, raised_tilt, forward_tilt_term_3 = c[7], c[8], c[9]
+    transmitted_torque_tilt = carried_tilt_term_2 * ratio_tilt
+    g[0] = -carried_tilt_term + load_torque_tilt + transmitted_torque_tilt
+    forward_tilt_term = 0.5 * load_torque_tilt * (lowered_tilt + raised_tilt - 2.0)
+    forward_tilt_term_2 = abs(load_torque_tilt)
+    g[1] = -forward_tilt_term + 0.5 * forward_tilt_term_2 * forward_tilt_term_3
+    g[2] = forward_tilt_term + 0.5 * forward_tilt_term_2 * forward_tilt_term_3
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def energy(t, x, u, p, m, e):
+    """Write stored energy in J, power in and dissipated power in W into e.
+
+    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
+    see MODE_NAMES; e [3] in J, W and W.
+    """
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    cos_tilt, sin_tilt, omega_tilt_sq, ratio_tilt_sq = forces[0], forces[1], forces[3], forces[6]
+    force_tilt_term, mass_tilt = forces[8], forces[10]
+    omega_tilt, i_tilt = x[1], x[2]
     u_tilt = u[0]
-    b_tilt = p[4]
-    L_tilt = p[5]
-    R_tilt = p[6]
-    K_t_tilt = p[7]
-    J_motor_tilt = p[8]
-    b_motor_tilt = p[9]
-    N_tilt = p[10]
-    slide_tilt = m[0]
-    gravity_cos_tilt = c[0]
-    gravity_sin_tilt = c[1]
-    inertia_tilt = c[2]
-    lead_tilt_inverse = c[3]
-    lowered_tilt = c[4]
-    l_ground_tilt_sq_plus_r_arm_tilt_sq = c[5]
-    linkage_cos_tilt = c[6]
-    linkage_sin_tilt = c[7]
-    raised_tilt = c[8]
-    dx[0] = omega_tilt
-    cos_tilt = math.cos(theta_tilt)
-    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
-    sin_tilt = math.sin(theta_tilt)
-    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt = (math.sqrt(-cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq
-        - linkage_sin_tilt_sin_tilt))
-    ratio_tilt_term = math.pi * N_tilt * lead_tilt_inverse / length_tilt
-    ratio_tilt_term_2 = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
-    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
-    lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
-    lost_lowering_tilt = ((1.0 - lowered_tilt) / abs(inertia_tilt * lowered_tilt
-        + lost_lowering_tilt_term))
-    lost_raising_tilt = (raised_tilt - 1.0) / (inertia_tilt * raised_tilt + lost_lowering_tilt_term)
-    length_tilt_by_theta_tilt = 0.5 * ratio_tilt_term_2 / length_tilt
-    ratio_tilt_by_theta_tilt = (-math.pi * N_tilt * lead_tilt_inverse * length_tilt_by_theta_tilt
-        * ratio_tilt_term_2 / (length_tilt * length_tilt) + ratio_tilt_term
-        * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt))
-    omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
-    carried_tilt_term = (J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt
-        * ratio_tilt_by_theta_tilt - ratio_tilt * (K_t_tilt * i_tilt - b_motor_tilt
-        * omega_tilt_ratio_tilt))
-    b_tilt_omega_tilt = b_tilt * omega_tilt
-    load_torque_tilt = (-b_tilt_omega_tilt + cos_tilt * gravity_cos_tilt + gravity_sin_tilt
-        * sin_tilt)
-    carried_tilt = -carried_tilt_term * inertia_tilt - load_torque_tilt * lost_lowering_tilt_term
-    carried_tilt_slide_tilt = carried_tilt * slide_tilt
-    force_tilt = (-b_tilt_omega_tilt - carried_tilt_term + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt - slide_tilt * (0.5 * carried_tilt_slide_tilt
-        * (-lost_lowering_tilt + lost_raising_tilt) + 0.5 * (lost_lowering_tilt + lost_raising_tilt)
-        * abs(carried_tilt_slide_tilt)))
-    mass_tilt = inertia_tilt + lost_lowering_tilt_term
-    inverse_mass_tilt = 1.0 / mass_tilt
-    dx[1] = force_tilt * inverse_mass_tilt * (slide_tilt * slide_tilt)
-    dx[2] = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
+    b_tilt, L_tilt, R_tilt, b_motor_tilt = p[4], p[5], p[6], p[9]
+    gravity_cos_tilt, gravity_sin_tilt = c[0], c[1]
+    i_tilt_sq = i_tilt * i_tilt
+    e[0] = (0.5 * L_tilt * i_tilt_sq + cos_tilt * gravity_sin_tilt - gravity_cos_tilt * sin_tilt
+        + 0.5 * mass_tilt * omega_tilt_sq)
+    e[1] = i_tilt * u_tilt
+    winding_loss_tilt = R_tilt * i_tilt_sq
+    e[2] = (b_motor_tilt * omega_tilt_sq * ratio_tilt_sq + b_tilt * omega_tilt_sq + force_tilt_term
+        * omega_tilt + winding_loss_tilt)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def equation_error(t, x, u, p, m, r):
+    """Write torques that rows lack, then rates of other states, into r; x ends in accelerations.
+
+    t in s; x [4] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
+    see MODE_NAMES; r [2] in N m, then STATE_UNITS per s.
+    """
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    force_tilt, mass_tilt, rate_of_i_tilt_term = forces[9], forces[10], forces[11]
+    given_accel_tilt = x[3]
+    r[0] = -force_tilt + given_accel_tilt * mass_tilt
+    r[1] = rate_of_i_tilt_term
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     """Write the non-zero derivatives of dx into fx, fu, fp and those of guards into gx, gp.
 
     t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
     see MODE_NAMES; fx [3, 3]; fu [3, 1]; fp [3, 20]; gx [3, 3]; gp [3, 20].
     """
-    theta_tilt = x[0]
-    omega_tilt = x[1]
-    i_tilt = x[2]
+    theta_tilt, omega_tilt, i_tilt = x[0], x[1], x[2]
     u_tilt = u[0]
-    m_payload = p[0]
-    J_y_payload = p[1]
-    c_x_payload = p[2]
-    c_z_payload = p[3]
-    b_tilt = p[4]
-    L_tilt = p[5]
-    R_tilt = p[6]
-    K_t_tilt = p[7]
-    J_motor_tilt = p[8]
-    b_motor_tilt = p[9]
-    N_tilt = p[10]
-    lead_tilt = p[11]
-    d_screw_tilt = p[12]
-    f_screw_tilt = p[13]
-    l_ground_tilt = p[14]
-    l_min_tilt = p[15]
-    r_arm_tilt = p[16]
-    s_start_tilt = p[17]
-    gravity = p[19]
+    m_payload, J_y_payload, c_x_payload, c_z_payload, b_tilt = p[0], p[1], p[2], p[3], p[4]
+    L_tilt, R_tilt, K_t_tilt, J_motor_tilt, b_motor_tilt = p[5], p[6], p[7], p[8], p[9]
+    N_tilt, lead_tilt, d_screw_tilt, f_screw_tilt, l_ground_tilt = p[10], p[11], p[12], p[13], p[14]
+    l_min_tilt, r_arm_tilt, s_start_tilt, gravity = p[15], p[16], p[17], p[19]
     slide_tilt = m[0]
     cos_tilt = math.cos(theta_tilt)
     gravity_cos_tilt_by_c_x_payload = gravity * m_payload
@@ -858,91 +827,19 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + backward_tilt_by_theta_tilt_term * gravity_sin_tilt_by_gravity_sin_tilt)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def guards(t, x, u, p, m, g):
-    """Write holding and breakaway torques, gap separations and contact torques into g.
-
-    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
-    see MODE_NAMES; g [3] in N m and rad.
-    """
-    theta_tilt = x[0]
-    omega_tilt = x[1]
-    i_tilt = x[2]
-    m_payload = p[0]
-    c_x_payload = p[2]
-    c_z_payload = p[3]
-    b_tilt = p[4]
-    K_t_tilt = p[7]
-    J_motor_tilt = p[8]
-    b_motor_tilt = p[9]
-    N_tilt = p[10]
-    lead_tilt = p[11]
-    d_screw_tilt = p[12]
-    f_screw_tilt = p[13]
-    l_ground_tilt = p[14]
-    l_min_tilt = p[15]
-    r_arm_tilt = p[16]
-    s_start_tilt = p[17]
-    gravity = p[19]
-    cos_tilt = math.cos(theta_tilt)
-    gravity_m_payload = gravity * m_payload
-    gravity_cos_tilt = c_x_payload * gravity_m_payload
-    gravity_sin_tilt = c_z_payload * gravity_m_payload
-    sin_tilt = math.sin(theta_tilt)
-    load_torque_tilt = (-b_tilt * omega_tilt + cos_tilt * gravity_cos_tilt + gravity_sin_tilt
-        * sin_tilt)
-    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
-    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
-    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
-    linkage_cos_tilt = (l_ground_tilt_sq_plus_r_arm_tilt_sq - ((l_min_tilt + s_start_tilt)
-        * (l_min_tilt + s_start_tilt)))
-    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
-    linkage_sin_tilt = (math.sqrt(4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt
-        * linkage_cos_tilt)))
-    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt = (math.sqrt(-cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq
-        - linkage_sin_tilt_sin_tilt))
-    lead_tilt_inverse = 1.0 / lead_tilt
-    ratio_tilt_term = math.pi * N_tilt * lead_tilt_inverse / length_tilt
-    ratio_tilt_term_2 = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
-    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
-    length_tilt_by_theta_tilt = 0.5 * ratio_tilt_term_2 / length_tilt
-    ratio_tilt_by_theta_tilt = (-math.pi * N_tilt * lead_tilt_inverse * length_tilt_by_theta_tilt
-        * ratio_tilt_term_2 / (length_tilt * length_tilt) + ratio_tilt_term
-        * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt))
-    transmitted_torque_tilt = (ratio_tilt * (K_t_tilt * i_tilt - b_motor_tilt * omega_tilt
-        * ratio_tilt))
-    g[0] = (-J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt * ratio_tilt_by_theta_tilt
-        + load_torque_tilt + transmitted_torque_tilt)
-    lowered_tilt_term = math.pi * d_screw_tilt
-    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
-    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
-    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
-    lowered_tilt = (-lead_tilt_inverse_lowered_tilt_term * (f_screw_tilt_lowered_tilt_term
-        - lead_tilt) / (f_screw_tilt_lead_tilt + lowered_tilt_term))
-    raised_tilt = (lead_tilt_inverse_lowered_tilt_term * (f_screw_tilt_lowered_tilt_term
-        + lead_tilt) / (-f_screw_tilt_lead_tilt + lowered_tilt_term))
-    forward_tilt_term = 0.5 * load_torque_tilt * (lowered_tilt + raised_tilt - 2.0)
-    forward_tilt_term_2 = abs(load_torque_tilt)
-    forward_tilt_term_3 = -lowered_tilt + raised_tilt
-    g[1] = -forward_tilt_term + 0.5 * forward_tilt_term_2 * forward_tilt_term_3
-    g[2] = forward_tilt_term + 0.5 * forward_tilt_term_2 * forward_tilt_term_3
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def outputs(t, x, u, p, y):
     """Write the measured signals into y.
 
     t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; y [2] in
     OUTPUT_UNITS.
     """
-    theta_tilt = x[0]
-    i_tilt = x[2]
+    theta_tilt, i_tilt = x[0], x[2]
     y[0] = theta_tilt
     y[1] = i_tilt
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def output_jacobian(t, x, u, p, yx, yp):
     """Write the non-zero derivatives of outputs by state and parameter.
 
@@ -953,198 +850,13 @@ def output_jacobian(t, x, u, p, yx, yp):
     yx[1, 2] = 1.0
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def energy(t, x, u, p, m, e):
-    """Write stored energy in J, power in and dissipated power in W into e.
-
-    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
-    see MODE_NAMES; e [3] in J, W and W.
-    """
-    theta_tilt = x[0]
-    omega_tilt = x[1]
-    i_tilt = x[2]
-    u_tilt = u[0]
-    m_payload = p[0]
-    J_y_payload = p[1]
-    c_x_payload = p[2]
-    c_z_payload = p[3]
-    b_tilt = p[4]
-    L_tilt = p[5]
-    R_tilt = p[6]
-    K_t_tilt = p[7]
-    J_motor_tilt = p[8]
-    b_motor_tilt = p[9]
-    N_tilt = p[10]
-    lead_tilt = p[11]
-    d_screw_tilt = p[12]
-    f_screw_tilt = p[13]
-    l_ground_tilt = p[14]
-    l_min_tilt = p[15]
-    r_arm_tilt = p[16]
-    s_start_tilt = p[17]
-    gravity = p[19]
-    slide_tilt = m[0]
-    stored_term = (c_x_payload * c_x_payload) * m_payload
-    stored_term_2 = (c_z_payload * c_z_payload) * m_payload
-    cos_tilt = math.cos(theta_tilt)
-    gravity_m_payload = gravity * m_payload
-    cos_tilt_gravity_m_payload = cos_tilt * gravity_m_payload
-    sin_tilt = math.sin(theta_tilt)
-    gravity_m_payload_sin_tilt = gravity_m_payload * sin_tilt
-    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
-    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
-    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
-    linkage_cos_tilt = (l_ground_tilt_sq_plus_r_arm_tilt_sq - ((l_min_tilt + s_start_tilt)
-        * (l_min_tilt + s_start_tilt)))
-    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
-    linkage_sin_tilt = (math.sqrt(4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt
-        * linkage_cos_tilt)))
-    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt = (math.sqrt(-cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq
-        - linkage_sin_tilt_sin_tilt))
-    lead_tilt_inverse = 1.0 / lead_tilt
-    ratio_tilt_term = math.pi * N_tilt * lead_tilt_inverse / length_tilt
-    ratio_tilt_term_2 = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
-    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
-    ratio_tilt_sq = ratio_tilt * ratio_tilt
-    J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
-    i_tilt_sq = i_tilt * i_tilt
-    omega_tilt_sq = omega_tilt * omega_tilt
-    half_omega_tilt_sq = 0.5 * omega_tilt_sq
-    e[0] = (J_motor_tilt_ratio_tilt_sq * half_omega_tilt_sq + J_y_payload * half_omega_tilt_sq + 0.5
-        * L_tilt * i_tilt_sq - c_x_payload * gravity_m_payload_sin_tilt + c_z_payload
-        * cos_tilt_gravity_m_payload + half_omega_tilt_sq * stored_term + half_omega_tilt_sq
-        * stored_term_2)
-    e[1] = i_tilt * u_tilt
-    load_inertia_tilt = J_y_payload + stored_term + stored_term_2
-    lowered_tilt_term = math.pi * d_screw_tilt
-    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
-    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
-    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
-    lowered_tilt = (-lead_tilt_inverse_lowered_tilt_term * (f_screw_tilt_lowered_tilt_term
-        - lead_tilt) / (f_screw_tilt_lead_tilt + lowered_tilt_term))
-    lost_lowering_tilt = ((1.0 - lowered_tilt) / abs(J_motor_tilt_ratio_tilt_sq + load_inertia_tilt
-        * lowered_tilt))
-    raised_tilt = (lead_tilt_inverse_lowered_tilt_term * (f_screw_tilt_lowered_tilt_term
-        + lead_tilt) / (-f_screw_tilt_lead_tilt + lowered_tilt_term))
-    lost_raising_tilt = ((raised_tilt - 1.0) / (J_motor_tilt_ratio_tilt_sq + load_inertia_tilt
-        * raised_tilt))
-    length_tilt_by_theta_tilt = 0.5 * ratio_tilt_term_2 / length_tilt
-    ratio_tilt_by_theta_tilt = (-math.pi * N_tilt * lead_tilt_inverse * length_tilt_by_theta_tilt
-        * ratio_tilt_term_2 / (length_tilt * length_tilt) + ratio_tilt_term
-        * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt))
-    driving_torque_tilt = (-J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
-        + ratio_tilt * (K_t_tilt * i_tilt - b_motor_tilt * omega_tilt * ratio_tilt))
-    load_torque_tilt = (-b_tilt * omega_tilt + c_x_payload * cos_tilt_gravity_m_payload
-        + c_z_payload * gravity_m_payload_sin_tilt)
-    carried_tilt = (-J_motor_tilt_ratio_tilt_sq * load_torque_tilt + driving_torque_tilt
-        * load_inertia_tilt)
-    carried_tilt_slide_tilt = carried_tilt * slide_tilt
-    winding_loss_tilt = R_tilt * i_tilt_sq
-    e[2] = (b_motor_tilt * omega_tilt_sq * ratio_tilt_sq + b_tilt * omega_tilt_sq + omega_tilt
-        * slide_tilt * (0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
-        + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt))
-        + winding_loss_tilt)
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def equation_error(t, x, u, p, m, r):
-    """Write the torque that every row lacks, then rates of other states into r; x ends in accel.
-
-    t in s; x [4] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
-    see MODE_NAMES; r [2] in N m, then STATE_UNITS per s.
-    """
-    theta_tilt = x[0]
-    omega_tilt = x[1]
-    i_tilt = x[2]
-    accel_tilt = x[3]
-    u_tilt = u[0]
-    m_payload = p[0]
-    J_y_payload = p[1]
-    c_x_payload = p[2]
-    c_z_payload = p[3]
-    b_tilt = p[4]
-    L_tilt = p[5]
-    R_tilt = p[6]
-    K_t_tilt = p[7]
-    J_motor_tilt = p[8]
-    b_motor_tilt = p[9]
-    N_tilt = p[10]
-    lead_tilt = p[11]
-    d_screw_tilt = p[12]
-    f_screw_tilt = p[13]
-    l_ground_tilt = p[14]
-    l_min_tilt = p[15]
-    r_arm_tilt = p[16]
-    s_start_tilt = p[17]
-    gravity = p[19]
-    slide_tilt = m[0]
-    cos_tilt = math.cos(theta_tilt)
-    gravity_m_payload = gravity * m_payload
-    gravity_cos_tilt = c_x_payload * gravity_m_payload
-    gravity_sin_tilt = c_z_payload * gravity_m_payload
-    inertia_tilt = (J_y_payload + (c_x_payload * c_x_payload) * m_payload + (c_z_payload
-        * c_z_payload) * m_payload)
-    lowered_tilt_term = math.pi * d_screw_tilt
-    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
-    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
-    lead_tilt_inverse = 1.0 / lead_tilt
-    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
-    lowered_tilt = (-lead_tilt_inverse_lowered_tilt_term * (f_screw_tilt_lowered_tilt_term
-        - lead_tilt) / (f_screw_tilt_lead_tilt + lowered_tilt_term))
-    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
-    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
-    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
-    linkage_cos_tilt = (l_ground_tilt_sq_plus_r_arm_tilt_sq - ((l_min_tilt + s_start_tilt)
-        * (l_min_tilt + s_start_tilt)))
-    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
-    linkage_sin_tilt = (math.sqrt(4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt
-        * linkage_cos_tilt)))
-    sin_tilt = math.sin(theta_tilt)
-    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt = (math.sqrt(-cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq
-        - linkage_sin_tilt_sin_tilt))
-    ratio_tilt_term = math.pi * N_tilt * lead_tilt_inverse / length_tilt
-    ratio_tilt_term_2 = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
-    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
-    lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
-    lost_lowering_tilt = ((1.0 - lowered_tilt) / abs(inertia_tilt * lowered_tilt
-        + lost_lowering_tilt_term))
-    raised_tilt = (lead_tilt_inverse_lowered_tilt_term * (f_screw_tilt_lowered_tilt_term
-        + lead_tilt) / (-f_screw_tilt_lead_tilt + lowered_tilt_term))
-    lost_raising_tilt = (raised_tilt - 1.0) / (inertia_tilt * raised_tilt + lost_lowering_tilt_term)
-    length_tilt_by_theta_tilt = 0.5 * ratio_tilt_term_2 / length_tilt
-    ratio_tilt_by_theta_tilt = (-math.pi * N_tilt * lead_tilt_inverse * length_tilt_by_theta_tilt
-        * ratio_tilt_term_2 / (length_tilt * length_tilt) + ratio_tilt_term
-        * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt))
-    omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
-    carried_tilt_term = (J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt
-        * ratio_tilt_by_theta_tilt - ratio_tilt * (K_t_tilt * i_tilt - b_motor_tilt
-        * omega_tilt_ratio_tilt))
-    b_tilt_omega_tilt = b_tilt * omega_tilt
-    load_torque_tilt = (-b_tilt_omega_tilt + cos_tilt * gravity_cos_tilt + gravity_sin_tilt
-        * sin_tilt)
-    carried_tilt = -carried_tilt_term * inertia_tilt - load_torque_tilt * lost_lowering_tilt_term
-    carried_tilt_slide_tilt = carried_tilt * slide_tilt
-    force_tilt = (-b_tilt_omega_tilt - carried_tilt_term + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt - slide_tilt * (0.5 * carried_tilt_slide_tilt
-        * (-lost_lowering_tilt + lost_raising_tilt) + 0.5 * (lost_lowering_tilt + lost_raising_tilt)
-        * abs(carried_tilt_slide_tilt)))
-    mass_tilt = inertia_tilt + lost_lowering_tilt_term
-    r[0] = accel_tilt * mass_tilt - force_tilt
-    r[1] = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def domain(p, bounds):
     """Write lower and upper bound of the state of every row of DOMAIN into bounds.
 
     p [20] in the units of PARAMETERS; bounds [2, 2] in STATE_UNITS: lower, upper.
     """
-    l_ground_tilt = p[14]
-    l_min_tilt = p[15]
-    r_arm_tilt = p[16]
-    s_start_tilt = p[17]
+    l_ground_tilt, l_min_tilt, r_arm_tilt, s_start_tilt = p[14], p[15], p[16], p[17]
     s_max_tilt = p[18]
     lowest_theta_tilt_term = (l_ground_tilt * l_ground_tilt) + (r_arm_tilt * r_arm_tilt)
     lowest_theta_tilt_term_2 = 0.5 / (l_ground_tilt * r_arm_tilt)
@@ -1158,20 +870,14 @@ def domain(p, bounds):
         * (-(l_min_tilt * l_min_tilt) + lowest_theta_tilt_term)))))
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def margins(p, margin):
     """Write by how much the parameters meet every row of REQUIREMENTS into margin.
 
     p [20] in the units of PARAMETERS; margin [3] in units of what is compared.
     """
-    lead_tilt = p[11]
-    d_screw_tilt = p[12]
-    f_screw_tilt = p[13]
-    l_ground_tilt = p[14]
-    l_min_tilt = p[15]
-    r_arm_tilt = p[16]
-    s_start_tilt = p[17]
-    s_max_tilt = p[18]
+    lead_tilt, d_screw_tilt, f_screw_tilt, l_ground_tilt = p[11], p[12], p[13], p[14]
+    l_min_tilt, r_arm_tilt, s_start_tilt, s_max_tilt = p[15], p[16], p[17], p[18]
     margin[0] = (2.0 * l_ground_tilt * r_arm_tilt - abs((l_ground_tilt * l_ground_tilt)
         + (r_arm_tilt * r_arm_tilt) - ((l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt))))
     margin[1] = s_max_tilt - s_start_tilt
@@ -1239,4 +945,4 @@ EFFECTS = (
      "linear actuator with lead screw and linkage",
      "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6", "", False),
 )
-# END sha256 684f0473448397a3b73a6ae144aa0c7d119138c179c9f52fd6913168d74d2259
+# END sha256 c3ba7fbae052cc9cf7eb3aee1efc7b7dc90c3ace7dabb771b7aa78d48a53740c

@@ -125,14 +125,15 @@ class Kernel:
     @property
     def body(self) -> tuple[Assignment, ...]:
         """The lines with their targets parsed."""
-        return tuple(Assignment(_target(name), e) for name, e in self.lines)
+        return _parsed(self.lines)
 
-    @property
-    def sections(self) -> tuple[tuple[str | None, tuple[Assignment, ...]], ...]:
-        """The body in parts: what is always computed, then what is computed where an optional array
-        is asked for, with the name of the array.
+    def sections(
+        self, lines: Sequence[Line]
+    ) -> tuple[tuple[str | None, tuple[Assignment, ...]], ...]:
+        """Some of its `lines` in parts: what is always computed, then what is computed where an
+        optional array is asked for, with the name of the array.
         """
-        order, body = self.arguments, self.body
+        order, body = self.arguments, _parsed(lines)
         starts: list[tuple[str | None, int]] = [(None, 0)]
         for array in self.optional:
             ends = [
@@ -164,6 +165,10 @@ class Kernel:
 def kernel(name: str, arguments: str, doc: str, vectors: Vectors, lines: Sequence[Line]) -> Kernel:
     """The kernel `name` of `arguments`, as they stand between parentheses."""
     return Kernel(name, tuple(arguments.split(", ")), doc, vectors, tuple(lines))
+
+
+def _parsed(lines: Sequence[Line]) -> tuple[Assignment, ...]:
+    return tuple(Assignment(_target(name), e) for name, e in lines)
 
 
 def _target(name: str) -> str | Entry:

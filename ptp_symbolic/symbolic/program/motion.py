@@ -1,7 +1,7 @@
 """Kernels of the motion: rates, Jacobians, guards of modes, impacts, what a motion lacks."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
@@ -11,24 +11,107 @@ from ptp_symbolic.symbolic.program.impacts import impact_expressions
 from ptp_symbolic.symbolic.program.kernel import (
     MODE_ARGUMENTS,
     Kernel,
+    Part,
     Vectors,
     kernel,
+    needed,
     shared_lines,
     used_names,
     variables,
+    with_needed,
 )
 from ptp_symbolic.symbolic.program.sharing import Line, share
 from ptp_symbolic.symbolic.program.term_names import vocabulary
 from ptp_symbolic.symbolic.symbols import real
 
+DOCS = {
+    "dx": ("mode_derivative", "Write the time derivative of the state into dx in the modes m."),
+    "g": (
+        "guards",
+        "Write holding and breakaway torques, gap separations and contact torques into g.",
+    ),
+    "e": ("energy", "Write stored energy in J, power in and dissipated power in W into e."),
+    "r": (
+        "equation_error",
+        "Write torques that rows lack, then rates of other states, into r; x ends in accelerations.",
+    ),
+}
 
-def mode_derivative_kernel(lines: Sequence[Line], vectors: Vectors) -> Kernel:
-    """Kernel `mode_derivative`, which `lines` compute."""
-    doc = "Write the time derivative of the state into dx in the modes m."
-    return kernel("mode_derivative", f"{MODE_ARGUMENTS}, dx", doc, vectors, lines)
+
+@dataclass(frozen=True)
+class Motion:
+    """The kernels of the motion, and what they have in common: what is `prepared` of the parameters
+    alone, and `forces`.
+    """
+
+    vectors: Vectors
+    prepared: Part
+    forces: Part
+    kernels: tuple[Kernel, ...]
 
 
-def prepare_kernel(once: Sequence[Line], vectors: Vectors) -> Kernel:
+def motion(
+    equations: Equations,
+    solve: dynamics.Solve,
+    guards: Sequence[sp.Expr],
+    stored_and_powers: Sequence[sp.Expr],
+    vectors: Vectors,
+) -> Motion:
+    """Vector field, guards, energy and residual, their terms shared: those of the parameters alone
+    are `constants`; those that the residual has in common with others, `mass_and_forces`.
+    """
+    given = [real(f"given_{acceleration}") for acceleration in solve.accelerations]
+    written = {
+        "dx": dynamics.state_rates(equations, solve),
+        "g": guards,
+        "r": _residual(equations, solve, given),
+        "e": stored_and_powers,
+    }
+    outputs = [(f"{array}[{i}]", e) for array, own in written.items() for i, e in enumerate(own)]
+    lines = share(solve.definitions, outputs, vocabulary(equations))
+    once, each = dynamics.prepared(lines, vectors.p)
+    entries = {a: [line for line in each if line[0].startswith(f"{a}[")] for a in written}
+    needs = {a: {name for name, _ in needed(each, own)} for a, own in entries.items()}
+    common = needs["r"] & (needs["dx"] | needs["g"] | needs["e"])
+    block = tuple(line for line in each if line[0] in common)
+    others = [line for line in each if line[0] not in common]
+    own = {a: tuple(with_needed(others, lines)) for a, lines in entries.items()}
+    used = used_names([line for rest in own.values() for line in rest])
+    results = tuple(name for name, _ in block if name in used)
+    used |= used_names(block)
+    vectors = replace(vectors, c=tuple(name for name, _ in once if name in used))
+    doc = "Return what depends on the parameters alone."
+    prepared = Part("constants", ("p",), doc, vectors, tuple(once), vectors.c)
+    doc = "Return mass matrix, forces and what else the functions below have in common."
+    forces = Part("mass_and_forces", tuple("txupmc"), doc, vectors, block, results)
+    extended = replace(vectors, x=(*vectors.x, *map(str, given)))
+    kernels = {
+        a: Kernel(
+            name,
+            (*MODE_ARGUMENTS.split(", "), a),
+            doc,
+            extended if a == "r" else vectors,
+            own[a],
+            parts=(prepared, forces),
+        )
+        for a, (name, doc) in DOCS.items()
+    }
+    first = (_prepare_kernel(once, vectors), _prepared_derivative(kernels["dx"], forces))
+    return Motion(vectors, prepared, forces, (*first, *kernels.values()))
+
+
+def _residual(
+    equations: Equations, solve: dynamics.Solve, given: Sequence[sp.Symbol]
+) -> list[sp.Expr]:
+    """What a measured motion leaves of the equations of motion: M a - forcing + sliding friction,
+    with the `given` accelerations, then the rates of the other states.
+    """
+    moving = {s.symbol: s.derivative for s in equations.extra_states}
+    others = [moving[s] for s in equations.state_symbols if s in moving]
+    return [*(solve.mass * sp.Matrix(given) - solve.force), *others]
+
+
+def _prepare_kernel(once: Sequence[Line], vectors: Vectors) -> Kernel:
     """Kernel `prepare`: the lines that are done `once` per parameter set."""
     entry = {name: f"c[{k}]" for k, name in enumerate(vectors.c)}
     inner = used_names(once)
@@ -38,10 +121,11 @@ def prepare_kernel(once: Sequence[Line], vectors: Vectors) -> Kernel:
     return kernel("prepare", "p, c", doc, vectors, lines)
 
 
-def prepared_derivative_kernel(each: Sequence[Line], vectors: Vectors) -> Kernel:
-    """Kernel `prepared_derivative`: the lines of `each` call."""
+def _prepared_derivative(whole: Kernel, forces: Part) -> Kernel:
+    """Kernel `prepared_derivative`: `whole`, with what is prepared as an argument."""
     doc = "Write the time derivative of the state into dx in the modes m, c being prepared."
-    return kernel("prepared_derivative", f"{MODE_ARGUMENTS}, c, dx", doc, vectors, each)
+    arguments = (*MODE_ARGUMENTS.split(", "), "c", "dx")
+    return Kernel("prepared_derivative", arguments, doc, whole.vectors, whole.own, parts=(forces,))
 
 
 def linearize_kernel(
@@ -66,16 +150,6 @@ def linearize_kernel(
     return replace(kernel("linearize", arguments, doc, vectors, lines), optional=("fp", "gx"))
 
 
-def guards_kernel(
-    equations: Equations, solve: dynamics.Solve, guards: Sequence[sp.Expr], vectors: Vectors
-) -> Kernel:
-    """Kernel `guards`."""
-    outputs = [(f"g[{i}]", e) for i, e in enumerate(guards)]
-    doc = "Write holding and breakaway torques, gap separations and contact torques into g."
-    lines = share(solve.definitions, outputs, vocabulary(equations)) if outputs else []
-    return kernel("guards", f"{MODE_ARGUMENTS}, g", doc, vectors, lines)
-
-
 def impact_kernels(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> list[Kernel]:
     """Two kernels where rigid bodies strike each other, none elsewhere."""
     if not any(contact.rigid for contact in equations.contacts):
@@ -92,25 +166,6 @@ def impact_kernels(equations: Equations, solve: dynamics.Solve, vectors: Vectors
     lines = shared_lines(equations, definitions, outputs)
     arguments = f"{MODE_ARGUMENTS}, strikex, strikep"
     return [first, kernel("impact_jacobian", arguments, doc, vectors, lines)]
-
-
-def equation_error_kernel(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> Kernel:
-    """What a measured motion leaves of the equations of motion: M a - forcing + sliding friction.
-
-    The accelerations, which follow the states in x, are given and not solved for.
-    """
-    given = [str(acceleration) for acceleration in solve.accelerations]
-    definitions = [(name, e) for name, e in solve.definitions if name not in given]
-    torques = solve.mass * sp.Matrix(solve.accelerations) - solve.force
-    moving = {s.symbol: s.derivative for s in equations.extra_states}
-    others = [moving[s] for s in equations.state_symbols if s in moving]
-    outputs = [(f"r[{i}]", e) for i, e in enumerate([*torques, *others])]
-    lines = share(definitions, outputs, vocabulary(equations))
-    extended = replace(vectors, x=(*vectors.x, *given))
-    doc = (
-        "Write the torque that every row lacks, then rates of other states into r; x ends in accel."
-    )
-    return kernel("equation_error", f"{MODE_ARGUMENTS}, r", doc, extended, lines)
 
 
 def _slopes(equations: Equations, solve: dynamics.Solve) -> dynamics.Slopes:

@@ -1,5 +1,7 @@
 """Kernels of what is read of the state and set in it: outputs, energies, bounds, samplers."""
 
+import sympy as sp
+
 from ptp_symbolic.symbolic.derivation.differentiation import derivative
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.program import dynamics
@@ -13,6 +15,7 @@ from ptp_symbolic.symbolic.program.kernel import (
 )
 from ptp_symbolic.symbolic.program.sharing import share
 from ptp_symbolic.symbolic.program.term_names import vocabulary
+from ptp_symbolic.symbolic.symbols import ZERO
 
 
 def outputs_kernel(grouped: Equations, solve: dynamics.Solve, vectors: Vectors) -> Kernel:
@@ -48,14 +51,17 @@ def output_jacobian_kernel(
     return kernel("output_jacobian", "t, x, u, p, yx, yp", doc, vectors, lines)
 
 
-def energy_kernel(equations: Equations, vectors: Vectors) -> Kernel:
-    """Kernel `energy`."""
-    ledger = equations.ledger
-    outputs = [("e[0]", ledger.stored), ("e[1]", ledger.power_in), ("e[2]", ledger.dissipated)]
-    doc = "Write stored energy in J, power in and dissipated power in W into e."
-    terms = [(str(symbol), term) for symbol, term in equations.terms]
-    lines = share(terms, outputs, vocabulary(equations))
-    return kernel("energy", f"{MODE_ARGUMENTS}, e", doc, vectors, lines)
+def energies(equations: Equations, solve: dynamics.Solve) -> list[sp.Expr]:
+    """Stored energy, power in and dissipated power; the kinetic energy in terms of `solve` where it
+    is the quadratic form of the mass matrix.
+    """
+    ledger, rates = equations.ledger, sp.Matrix(equations.rates)
+    stored = ledger.stored
+    at_rest = stored.xreplace(dict.fromkeys(rates, ZERO))
+    kinetic = (rates.T * equations.mass_matrix * rates)[0] / 2
+    if sp.expand(stored - at_rest - kinetic) == 0:
+        stored = at_rest + sp.expand((rates.T * solve.mass * rates)[0] / 2)
+    return [stored, ledger.power_in, ledger.dissipated]
 
 
 def domain_kernel(equations: Equations, vectors: Vectors) -> Kernel:

@@ -157,7 +157,7 @@ def _kernels(program: Program) -> list[Kernel]:
 def _function(kernel: Kernel, name: str, language: Language) -> str:
     """The definition of a kernel."""
     lines = [f"const real {_id(n, language)} = {a}[{k}];" for n, a, k in kernel.unpacked]
-    for optional, part in kernel.sections:
+    for optional, part in kernel.sections(kernel.lines):
         lines += [f"if ({optional} == 0)", "    return;"] if optional else []
         lines += [_statement(kernel, each, language) for each in part]
     if kernel.finds_modes:

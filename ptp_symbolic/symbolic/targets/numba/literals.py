@@ -63,6 +63,25 @@ def assignment_text(target: str, source: str, width: int) -> str:
     return f"{target} = (\n{body}"
 
 
+def tuple_text(before: str, items: Iterable[str], width: int) -> str:
+    """A tuple of names in lines of `width`, with a text before it."""
+    return _wrapped(f"{before}({listed(items)})", width, "", "    ")
+
+
+def unpacking_text(entries: Iterable[tuple[str, str, int]], width: int) -> list[str]:
+    """Assignments of names from array entries, those of an array together in lines of `width`."""
+    lines: list[tuple[list[str], list[str], str]] = []
+    for name, array, index in entries:
+        entry = f"{array}[{index}]"
+        if lines and lines[-1][2] == array:
+            names, values = [*lines[-1][0], name], [*lines[-1][1], entry]
+            if len(f"{', '.join(names)} = {', '.join(values)}") <= width:
+                lines[-1] = (names, values, array)
+                continue
+        lines.append(([name], [entry], array))
+    return [f"{', '.join(names)} = {', '.join(values)}" for names, values, _ in lines]
+
+
 def _filled_row(row: str) -> str:
     literals = LITERAL.sub(lambda found: found[0].replace(" ", UNBROKEN), row)
     further = 5 if row.startswith("(") else 4

@@ -2,12 +2,18 @@
 
 import hashlib
 import textwrap
+from collections.abc import Sequence
 
 from ptp_symbolic.symbolic.derivation.equations import Equations
-from ptp_symbolic.symbolic.program.kernel import Kernel
+from ptp_symbolic.symbolic.program.kernel import Kernel, Part, used_names
 from ptp_symbolic.symbolic.program.program import Program, program
 from ptp_symbolic.symbolic.targets.numba.docstring import docstring
-from ptp_symbolic.symbolic.targets.numba.literals import WIDTH, assignment_text
+from ptp_symbolic.symbolic.targets.numba.literals import (
+    WIDTH,
+    assignment_text,
+    tuple_text,
+    unpacking_text,
+)
 from ptp_symbolic.symbolic.targets.numba.metadata import metadata_text, search_text
 from ptp_symbolic.symbolic.targets.numba.mode_functions import mode_functions_text
 from ptp_symbolic.symbolic.targets.printing import Language
@@ -25,6 +31,13 @@ NUMBA = Language(
 )
 SEAL = "# END sha256 "
 INNER_WIDTH = WIDTH - 4
+ALLOCATES = '@njit(cache=True, error_model="numpy", nogil=True)\n'
+COMPILED = '@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)\n'  # refuses to allocate
+INLINED = COMPILED.replace("_nrt", "forceinline=True, _nrt")
+WRITTEN_BY_PARTS = {
+    "prepare": ["values = constants(p)", "for k in range(PREPARED):\n    c[k] = values[k]"],
+    "mode_derivative": ["prepared_derivative(t, x, u, p, m, constants(p), dx)"],
+}
 IMPLIED_MODES = ("m = np.empty(len(MODE_NAMES))", "initial_modes(t, x, u, p, m)")
 
 
@@ -40,7 +53,8 @@ def module_text(equations: Equations) -> str:
 def written(whole: Program) -> str:
     """Return a program as the source of a module."""
     modes = mode_functions_text(whole.has_modes, whole.has_rigid_contacts)
-    body = "\n\n\n".join([*(_function(kernel) for kernel in whole.kernels), modes])
+    functions = [*map(_part, whole.parts), *map(_function, whole.kernels), modes]
+    body = "\n\n\n".join(functions)
     digest = hashlib.sha256(body.encode()).hexdigest()[:16]
     opening = docstring(whole.computed, whole.operations)
     head = metadata_text(whole.equations, digest, opening, len(whole.vectors.c))
@@ -53,20 +67,51 @@ def sealed(text: str) -> str:
     return f"{text}{SEAL}{hashlib.sha256(text.encode()).hexdigest()}\n"
 
 
+def _part(part: Part) -> str:
+    """A compiled function that returns what kernels have in common."""
+    rows = [f'"""{part.doc}"""']
+    rows += unpacking_text(part.unpacked, INNER_WIDTH)
+    rows += [assignment_text(name, NUMBA.expression(e), INNER_WIDTH) for name, e in part.lines]
+    rows.append(tuple_text("return ", part.results, INNER_WIDTH))
+    return _compiled(INLINED, part.name, part.arguments, rows)
+
+
 def _function(kernel: Kernel) -> str:
     """A compiled function that unpacks what it uses and assigns the lines of a kernel in turn."""
     shapes = "; ".join(_described(kernel, argument) for argument in kernel.arguments)
-    shapes = textwrap.fill(f"{shapes}.", INNER_WIDTH)
-    rows = [f'"""{kernel.doc}\n\n{shapes}\n"""']
+    rows = [f'"""{kernel.doc}\n\n{textwrap.fill(f"{shapes}.", INNER_WIDTH)}\n"""']
+    if kernel.name in WRITTEN_BY_PARTS and kernel.lines:
+        rows += WRITTEN_BY_PARTS[kernel.name]
+        return _compiled(COMPILED, kernel.name, kernel.arguments, rows)
     rows += IMPLIED_MODES if kernel.finds_modes else ()
-    rows += [f"{name} = {array}[{index}]" for name, array, index in kernel.unpacked]
-    for optional, lines in kernel.sections:
+    rows += _calls(kernel)
+    rows += unpacking_text(kernel.vectors.unpacked(kernel.own), INNER_WIDTH)
+    for optional, lines in kernel.sections(kernel.own):
         rows += [f"if len({optional}) == 0:\n    return"] if optional else []
         rows += [assignment_text(str(t), NUMBA.expression(e), INNER_WIDTH) for t, e in lines]
     if not kernel.lines:
         rows.append("return")
-    head = '@njit(cache=True, error_model="numpy", nogil=True)\n'
-    head += f"def {kernel.name}({', '.join(kernel.arguments)}):\n"
+    options = ALLOCATES if kernel.finds_modes else COMPILED
+    return _compiled(options, kernel.name, kernel.arguments, rows)
+
+
+def _calls(kernel: Kernel) -> list[str]:
+    """Calls of the parts whose results a kernel uses."""
+    rows: list[str] = []
+    used = used_names(kernel.own)
+    for part in reversed(kernel.parts):
+        call = f"{part.name}({', '.join(part.arguments)})"
+        if part.arguments == ("p",):
+            rows[:0] = [f"c = {call}"] if rows or used & set(part.results) else []
+        elif used & set(part.results):
+            rows.append(f"forces = {call}")
+            places = enumerate(part.results)
+            rows += unpacking_text([(n, "forces", k) for k, n in places if n in used], INNER_WIDTH)
+    return rows
+
+
+def _compiled(options: str, name: str, arguments: Sequence[str], rows: Sequence[str]) -> str:
+    head = f"{options}def {name}({', '.join(arguments)}):\n"
     return head + textwrap.indent("\n".join(rows), "    ")
 
 
