@@ -28,7 +28,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "1fc5beaeb3fe8307"
+MODEL_HASH = "f5050564febb537a"
 NAME = "ideal"
 TITLE = "Balanced pan-tilt platform of the thesis"
 # How many numbers `prepare` writes.
@@ -99,6 +99,7 @@ def prepare(p, c):
     """Write into c what prepared_derivative takes from the parameters alone.
 
     p [6] in the units of PARAMETERS; c [3] of prepare.
+    c: inertia_pan_sin_sq_tilt, inertia_pan, inverse_mass_tilt.
     """
     values = constants(p)
     for k in range(PREPARED):
@@ -110,17 +111,18 @@ def prepared_derivative(t, x, u, p, m, c, dx):
     """Write the time derivative of the state into dx in the modes m, c being prepared.
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-    MODE_NAMES; c [3] of prepare; dx [4] in STATE_UNITS per s.
+      MODE_NAMES; c [3] of prepare; dx [4] in STATE_UNITS per s.
+    dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt.
     """
     forces = mass_and_forces(t, x, u, p, m, c)
     force_pan, mass_pan, force_tilt = forces[0], forces[1], forces[2]
     omega_pan, omega_tilt = x[2], x[3]
     inverse_mass_tilt = c[2]
-    dx[0] = omega_pan
-    dx[1] = omega_tilt
+    dx[0] = omega_pan  # rate_of_theta_pan
+    dx[1] = omega_tilt  # rate_of_theta_tilt
     inverse_mass_pan = 1.0 / mass_pan
-    dx[2] = force_pan * inverse_mass_pan
-    dx[3] = force_tilt * inverse_mass_tilt
+    dx[2] = force_pan * inverse_mass_pan  # accel_pan
+    dx[3] = force_tilt * inverse_mass_tilt  # accel_tilt
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -128,7 +130,8 @@ def mode_derivative(t, x, u, p, m, dx):
     """Write the time derivative of the state into dx in the modes m.
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-    MODE_NAMES; dx [4] in STATE_UNITS per s.
+      MODE_NAMES; dx [4] in STATE_UNITS per s.
+    dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt.
     """
     prepared_derivative(t, x, u, p, m, constants(p), dx)
 
@@ -138,7 +141,7 @@ def guards(t, x, u, p, m, g):
     """Write holding and breakaway torques, gap separations and contact torques into g.
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-    MODE_NAMES; g [0] in N m and rad.
+      MODE_NAMES; g [0] in N m and rad.
     """
     return
 
@@ -148,7 +151,8 @@ def energy(t, x, u, p, m, e):
     """Write stored energy in J, power in and dissipated power in W into e.
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-    MODE_NAMES; e [3] in J, W and W.
+      MODE_NAMES; e [3] in J, W and W.
+    e: stored, power_in, dissipated.
     """
     c = constants(p)
     forces = mass_and_forces(t, x, u, p, m, c)
@@ -158,25 +162,27 @@ def energy(t, x, u, p, m, e):
     J_y_tilt, b_pan, b_tilt = p[2], p[4], p[5]
     omega_tilt_sq = omega_tilt * omega_tilt
     omega_pan_sq = omega_pan * omega_pan
-    e[0] = 0.5 * J_y_tilt * omega_tilt_sq + 0.5 * mass_pan * omega_pan_sq
-    e[1] = omega_pan * tau_pan + omega_tilt * tau_tilt
-    e[2] = b_pan * omega_pan_sq + b_tilt * omega_tilt_sq
+    e[0] = 0.5 * J_y_tilt * omega_tilt_sq + 0.5 * mass_pan * omega_pan_sq  # stored
+    e[1] = omega_pan * tau_pan + omega_tilt * tau_tilt  # power_in
+    e[2] = b_pan * omega_pan_sq + b_tilt * omega_tilt_sq  # dissipated
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def equation_error(t, x, u, p, m, r):
-    """Write torques that rows lack, then rates of other states, into r; x ends in accelerations.
+    """Write torques that rows lack, then other states' rates, into r; x ends in accelerations.
 
     t in s; x [6] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-    MODE_NAMES; r [2] in N m, then STATE_UNITS per s.
+      MODE_NAMES; r [2] in N m, then STATE_UNITS per s.
+    x: STATE_NAMES, then given_accel_pan, given_accel_tilt.
+    r: torque_pan, torque_tilt.
     """
     c = constants(p)
     forces = mass_and_forces(t, x, u, p, m, c)
     force_pan, mass_pan, force_tilt = forces[0], forces[1], forces[2]
     given_accel_pan, given_accel_tilt = x[4], x[5]
     J_y_tilt = p[2]
-    r[0] = -force_pan + given_accel_pan * mass_pan
-    r[1] = J_y_tilt * given_accel_tilt - force_tilt
+    r[0] = -force_pan + given_accel_pan * mass_pan  # torque_pan
+    r[1] = J_y_tilt * given_accel_tilt - force_tilt  # torque_tilt
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -184,59 +190,68 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     """Write the non-zero derivatives of dx into fx, fu, fp and those of guards into gx, gp.
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-    MODE_NAMES; fx [4, 4]; fu [4, 2]; fp [4, 6]; gx [0, 4]; gp [0, 6].
+      MODE_NAMES; fx [4, 4]; fu [4, 2]; fp [4, 6]; gx [0, 4]; gp [0, 6].
+    fx: rows and columns as STATE_NAMES.
+    fu: rows as STATE_NAMES, columns as INPUT_NAMES.
+    fp: rows as STATE_NAMES, columns as PARAMETERS.
+    gx: rows as g of guards, columns as STATE_NAMES.
+    gp: rows as g of guards, columns as PARAMETERS.
+    Where fp or gx is empty, it and what follows it is not computed.
     """
     theta_tilt, omega_pan, omega_tilt = x[1], x[2], x[3]
     tau_pan, tau_tilt = u[0], u[1]
     J_pan, J_x_tilt, J_y_tilt, J_z_tilt, b_pan, b_tilt = p[0], p[1], p[2], p[3], p[4], p[5]
-    cos_tilt = math.cos(theta_tilt)
+    inertia_pan = J_pan + J_z_tilt
     inertia_pan_sin_sq_tilt = J_x_tilt - J_z_tilt
     sin_tilt = math.sin(theta_tilt)
     inertia_pan_per_sin_tilt = inertia_pan_sin_sq_tilt * sin_tilt
-    coriolis_by_omega_pan = cos_tilt * inertia_pan_per_sin_tilt
-    coriolis = coriolis_by_omega_pan * omega_pan
-    twice_omega_tilt = 2.0 * omega_tilt
-    force_pan = -b_pan * omega_pan - coriolis * twice_omega_tilt + tau_pan
-    inertia_pan = J_pan + J_z_tilt
     inertia_pan_per_sin_tilt_sin_tilt = inertia_pan_per_sin_tilt * sin_tilt
     mass_pan = inertia_pan + inertia_pan_per_sin_tilt_sin_tilt
     inverse_mass_pan = 1.0 / mass_pan
+    cos_tilt = math.cos(theta_tilt)
+    coriolis_by_inertia_pan_per_sin_tilt = cos_tilt * omega_pan
+    coriolis = coriolis_by_inertia_pan_per_sin_tilt * inertia_pan_per_sin_tilt
+    twice_omega_tilt = 2.0 * omega_tilt
+    force_pan = -b_pan * omega_pan - coriolis * twice_omega_tilt + tau_pan
     accel_pan = force_pan * inverse_mass_pan
+    coriolis_by_omega_pan = cos_tilt * inertia_pan_per_sin_tilt
     inertia_pan_per_sin_tilt_by_theta_tilt = cos_tilt * inertia_pan_sin_sq_tilt
-    coriolis_by_theta_tilt = (cos_tilt * inertia_pan_per_sin_tilt_by_theta_tilt * omega_pan
-        - inertia_pan_per_sin_tilt_sin_tilt * omega_pan)
+    coriolis_by_theta_tilt = (coriolis_by_inertia_pan_per_sin_tilt
+        * inertia_pan_per_sin_tilt_by_theta_tilt - inertia_pan_per_sin_tilt_sin_tilt * omega_pan)
     fx[2, 1] = (inverse_mass_pan * (-accel_pan * (coriolis_by_omega_pan
-        + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt) - coriolis_by_theta_tilt
-        * twice_omega_tilt))
+        + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt)
+        - coriolis_by_theta_tilt * twice_omega_tilt))  # accel_pan_by_theta_tilt
     inverse_mass_tilt = 1.0 / J_y_tilt
-    inverse_mass_tilt_omega_pan = inverse_mass_tilt * omega_pan
-    fx[3, 1] = coriolis_by_theta_tilt * inverse_mass_tilt_omega_pan
-    fx[0, 2] = 1.0
+    fx[3, 1] = coriolis_by_theta_tilt * inverse_mass_tilt * omega_pan  # accel_tilt_by_theta_tilt
+    fx[0, 2] = 1.0  # rate_of_theta_pan_by_omega_pan
+    # accel_pan_by_omega_pan
     fx[2, 2] = inverse_mass_pan * (-b_pan - coriolis_by_omega_pan * twice_omega_tilt)
+    # accel_tilt_by_omega_pan
     fx[3, 2] = inverse_mass_tilt * (coriolis + coriolis_by_omega_pan * omega_pan)
-    fx[1, 3] = 1.0
-    fx[2, 3] = -2.0 * coriolis * inverse_mass_pan
-    fx[3, 3] = -b_tilt * inverse_mass_tilt
-    fu[2, 0] = inverse_mass_pan
-    fu[3, 1] = inverse_mass_tilt
+    fx[1, 3] = 1.0  # rate_of_theta_tilt_by_omega_tilt
+    fx[2, 3] = -2.0 * coriolis * inverse_mass_pan  # accel_pan_by_omega_tilt
+    fx[3, 3] = -b_tilt * inverse_mass_tilt  # accel_tilt_by_omega_tilt
+    fu[2, 0] = inverse_mass_pan  # accel_pan_by_tau_pan
+    fu[3, 1] = inverse_mass_tilt  # accel_tilt_by_tau_tilt
     if len(fp) == 0:
         return
     accel_pan_by_inertia_pan = -accel_pan * inverse_mass_pan
-    fp[2, 0] = accel_pan_by_inertia_pan
-    coriolis_by_inertia_pan_sin_sq_tilt = cos_tilt * omega_pan * sin_tilt
+    fp[2, 0] = accel_pan_by_inertia_pan  # accel_pan_by_J_pan
+    coriolis_by_inertia_pan_sin_sq_tilt = coriolis_by_inertia_pan_per_sin_tilt * sin_tilt
     accel_pan_by_inertia_pan_sin_sq_tilt = (inverse_mass_pan * (-accel_pan * (sin_tilt * sin_tilt)
         - coriolis_by_inertia_pan_sin_sq_tilt * twice_omega_tilt))
-    fp[2, 1] = accel_pan_by_inertia_pan_sin_sq_tilt
-    accel_tilt_by_inertia_pan_sin_sq_tilt = (coriolis_by_inertia_pan_sin_sq_tilt
-        * inverse_mass_tilt_omega_pan)
-    fp[3, 1] = accel_tilt_by_inertia_pan_sin_sq_tilt
+    fp[2, 1] = accel_pan_by_inertia_pan_sin_sq_tilt  # accel_pan_by_J_x_tilt
+    accel_tilt_by_inertia_pan_sin_sq_tilt = (coriolis_by_inertia_pan_sin_sq_tilt * inverse_mass_tilt
+        * omega_pan)
+    fp[3, 1] = accel_tilt_by_inertia_pan_sin_sq_tilt  # accel_tilt_by_J_x_tilt
     force_tilt = -b_tilt * omega_tilt + coriolis * omega_pan + tau_tilt
     accel_tilt = force_tilt * inverse_mass_tilt
-    fp[3, 2] = -accel_tilt * inverse_mass_tilt
+    fp[3, 2] = -accel_tilt * inverse_mass_tilt  # accel_tilt_by_J_y_tilt
+    # accel_pan_by_J_z_tilt
     fp[2, 3] = accel_pan_by_inertia_pan - accel_pan_by_inertia_pan_sin_sq_tilt
-    fp[3, 3] = -accel_tilt_by_inertia_pan_sin_sq_tilt
-    fp[2, 4] = -inverse_mass_pan * omega_pan
-    fp[3, 5] = -inverse_mass_tilt * omega_tilt
+    fp[3, 3] = -accel_tilt_by_inertia_pan_sin_sq_tilt  # accel_tilt_by_J_z_tilt
+    fp[2, 4] = -inverse_mass_pan * omega_pan  # accel_pan_by_b_pan
+    fp[3, 5] = -inverse_mass_tilt * omega_tilt  # accel_tilt_by_b_tilt
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -244,11 +259,12 @@ def outputs(t, x, u, p, y):
     """Write the measured signals into y.
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; y [2] in
-    OUTPUT_UNITS.
+      OUTPUT_UNITS.
+    y: reading_theta_pan, reading_theta_tilt.
     """
     theta_pan, theta_tilt = x[0], x[1]
-    y[0] = theta_pan
-    y[1] = theta_tilt
+    y[0] = theta_pan  # reading_theta_pan
+    y[1] = theta_tilt  # reading_theta_tilt
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -256,10 +272,10 @@ def output_jacobian(t, x, u, p, yx, yp):
     """Write the non-zero derivatives of outputs by state and parameter.
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; yx [2, 4];
-    yp [2, 6].
+      yp [2, 6].
     """
-    yx[0, 0] = 1.0
-    yx[1, 1] = 1.0
+    yx[0, 0] = 1.0  # reading_theta_pan_by_theta_pan
+    yx[1, 1] = 1.0  # reading_theta_tilt_by_theta_tilt
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -280,16 +296,20 @@ def margins(p, margin):
     return
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def initial_modes(t, x, u, p, m):
     """Leave m alone: this model has no modes."""
     return
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def state_derivative(t, x, u, p, dx):
     """Write the time derivative of the state into dx."""
-    mode_derivative(t, x, u, p, x, dx)
+    mode_derivative(t, x, u, p, (), dx)
+
+
+# What the field calls some of these functions.
+vector_field, events, inverse_dynamics = mode_derivative, guards, equation_error
 
 
 # What follows is for fits and diagnoses; no function above uses it.
@@ -312,4 +332,4 @@ EFFECTS = (
      "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
      "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
 )
-# END sha256 96b169352e90bf9e81b7a08be3b041056860cb9186cd527ef848766fb0358c3a
+# END sha256 d6e34ea0be76f629f2e3bf08f5016b0702cd83253e8d0ee795cf878a2d718ada

@@ -32,7 +32,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "914b3846e5934a31"
+MODEL_HASH = "57f787f2efb4ccfa"
 NAME = "pan_drive"
 TITLE = "Pan drive of the thesis"
 # How many numbers `prepare` writes.
@@ -109,27 +109,26 @@ def mass_and_forces(t, x, u, p, m, c):
     L_pan, R_pan, K_t_pan, N_pan = p[13], p[14], p[15], p[17]
     slide_pan, side_pan, active_pan = m[0], m[1], m[2]
     half_gap_pan, K_t_pan_N_pan = c[0], c[4]
-    shaft_torque_pan_term = omega_gear_pan - omega_pan
-    d_shaft_pan_shaft_torque_pan_term = d_shaft_pan * shaft_torque_pan_term
-    shaft_torque_pan_term_2 = -theta_gear_pan + theta_pan
-    shaft_torque_pan_term_3 = -half_gap_pan * side_pan - shaft_torque_pan_term_2
-    k_shaft_pan_shaft_torque_pan_term_3 = k_shaft_pan * shaft_torque_pan_term_3
-    shaft_torque_pan = (active_pan * (d_shaft_pan_shaft_torque_pan_term
-        + k_shaft_pan_shaft_torque_pan_term_3))
+    omega_gear_pan_minus_omega_pan = omega_gear_pan - omega_pan
+    shaft_torque_pan_term = d_shaft_pan * omega_gear_pan_minus_omega_pan
+    theta_pan_minus_theta_gear_pan = -theta_gear_pan + theta_pan
+    shaft_torque_pan_term_2 = -half_gap_pan * side_pan - theta_pan_minus_theta_gear_pan
+    k_shaft_pan_shaft_torque_pan_term_2 = k_shaft_pan * shaft_torque_pan_term_2
+    shaft_torque_pan = active_pan * (k_shaft_pan_shaft_torque_pan_term_2 + shaft_torque_pan_term)
     force_pan = -b_pan * omega_pan + shaft_torque_pan
     coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
     omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
-    stribeck_square_pan = (omega_gear_pan_sq / ((v_s_pan * v_s_pan) * ((a_v_s_pan * slide_pan + 1.0)
-        * (a_v_s_pan * slide_pan + 1.0))))
+    stribeck_square_pan = (omega_gear_pan_sq / ((v_s_pan * v_s_pan) * ((a_v_s_pan * slide_pan
+        + 1.0) * (a_v_s_pan * slide_pan + 1.0))))
     viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
-    force_gear_pan_term = (slide_pan * (coulomb_torque_pan + omega_gear_pan * slide_pan
-        * viscous_coefficient_pan + (F_s_pan * (a_F_s_pan * slide_pan + 1.0) - coulomb_torque_pan)
-        * math.exp(-stribeck_square_pan)))
+    force_gear_pan_term = (slide_pan * (coulomb_torque_pan
+        + omega_gear_pan * slide_pan * viscous_coefficient_pan + (F_s_pan * (a_F_s_pan * slide_pan
+        + 1.0) - coulomb_torque_pan) * math.exp(-stribeck_square_pan)))
     force_gear_pan = K_t_pan * N_pan * i_pan - force_gear_pan_term - shaft_torque_pan
-    rate_of_i_pan_term = (-K_t_pan_N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
-    return (shaft_torque_pan_term, d_shaft_pan_shaft_torque_pan_term, shaft_torque_pan_term_2,
-        shaft_torque_pan_term_3, k_shaft_pan_shaft_torque_pan_term_3, shaft_torque_pan, force_pan,
-        omega_gear_pan_sq, force_gear_pan_term, force_gear_pan, rate_of_i_pan_term)
+    rate_of_i_pan = (-K_t_pan_N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
+    return (omega_gear_pan_minus_omega_pan, shaft_torque_pan_term, theta_pan_minus_theta_gear_pan,
+        shaft_torque_pan_term_2, k_shaft_pan_shaft_torque_pan_term_2, shaft_torque_pan, force_pan,
+        omega_gear_pan_sq, force_gear_pan_term, force_gear_pan, rate_of_i_pan)
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -137,6 +136,7 @@ def prepare(p, c):
     """Write into c what prepared_derivative takes from the parameters alone.
 
     p [18] in the units of PARAMETERS; c [5] of prepare.
+    c: half_gap_pan, inverse_mass_pan, mass_gear_pan, inverse_mass_gear_pan, K_t_pan_N_pan.
     """
     values = constants(p)
     for k in range(PREPARED):
@@ -148,18 +148,19 @@ def prepared_derivative(t, x, u, p, m, c, dx):
     """Write the time derivative of the state into dx in the modes m, c being prepared.
 
     t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
-    see MODE_NAMES; c [5] of prepare; dx [5] in STATE_UNITS per s.
+      see MODE_NAMES; c [5] of prepare; dx [5] in STATE_UNITS per s.
+    dx: rate_of_theta_pan, accel_pan, rate_of_theta_gear_pan, accel_gear_pan, rate_of_i_pan.
     """
     forces = mass_and_forces(t, x, u, p, m, c)
-    force_pan, force_gear_pan, rate_of_i_pan_term = forces[6], forces[9], forces[10]
+    force_pan, force_gear_pan, rate_of_i_pan = forces[6], forces[9], forces[10]
     omega_pan, omega_gear_pan = x[1], x[3]
     slide_pan = m[0]
     inverse_mass_pan, inverse_mass_gear_pan = c[1], c[3]
-    dx[0] = omega_pan
-    dx[1] = force_pan * inverse_mass_pan
-    dx[2] = omega_gear_pan
-    dx[3] = force_gear_pan * inverse_mass_gear_pan * (slide_pan * slide_pan)
-    dx[4] = rate_of_i_pan_term
+    dx[0] = omega_pan  # rate_of_theta_pan
+    dx[1] = force_pan * inverse_mass_pan  # accel_pan
+    dx[2] = omega_gear_pan  # rate_of_theta_gear_pan
+    dx[3] = force_gear_pan * inverse_mass_gear_pan * (slide_pan * slide_pan)  # accel_gear_pan
+    dx[4] = rate_of_i_pan
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -167,7 +168,8 @@ def mode_derivative(t, x, u, p, m, dx):
     """Write the time derivative of the state into dx in the modes m.
 
     t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
-    see MODE_NAMES; dx [5] in STATE_UNITS per s.
+      see MODE_NAMES; dx [5] in STATE_UNITS per s.
+    dx: rate_of_theta_pan, accel_pan, rate_of_theta_gear_pan, accel_gear_pan, rate_of_i_pan.
     """
     prepared_derivative(t, x, u, p, m, constants(p), dx)
 
@@ -177,24 +179,25 @@ def guards(t, x, u, p, m, g):
     """Write holding and breakaway torques, gap separations and contact torques into g.
 
     t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
-    see MODE_NAMES; g [7] in N m and rad.
+      see MODE_NAMES; g [7] in N m and rad.
+    g: holding_pan, forward_pan, backward_pan, separation_pan, half_gap_pan, upper_pan, lower_pan.
     """
     c = constants(p)
     forces = mass_and_forces(t, x, u, p, m, c)
-    d_shaft_pan_shaft_torque_pan_term, shaft_torque_pan_term_2 = forces[1], forces[2]
+    shaft_torque_pan_term, theta_pan_minus_theta_gear_pan = forces[1], forces[2]
     shaft_torque_pan = forces[5]
     i_pan = x[4]
     F_s_pan, a_F_s_pan, k_shaft_pan = p[3], p[7], p[11]
     half_gap_pan, K_t_pan_N_pan = c[0], c[4]
-    g[0] = K_t_pan_N_pan * i_pan - shaft_torque_pan
-    g[1] = F_s_pan * (a_F_s_pan + 1.0)
-    g[2] = F_s_pan * (1.0 - a_F_s_pan)
-    g[3] = -shaft_torque_pan_term_2
+    g[0] = K_t_pan_N_pan * i_pan - shaft_torque_pan  # holding_pan
+    g[1] = F_s_pan * (a_F_s_pan + 1.0)  # forward_pan
+    g[2] = F_s_pan * (1.0 - a_F_s_pan)  # backward_pan
+    g[3] = -theta_pan_minus_theta_gear_pan  # separation_pan
     g[4] = half_gap_pan
-    g[5] = (d_shaft_pan_shaft_torque_pan_term + k_shaft_pan * (-half_gap_pan
-        - shaft_torque_pan_term_2))
-    g[6] = (d_shaft_pan_shaft_torque_pan_term + k_shaft_pan * (half_gap_pan
-        - shaft_torque_pan_term_2))
+    # upper_pan
+    g[5] = k_shaft_pan * (-half_gap_pan - theta_pan_minus_theta_gear_pan) + shaft_torque_pan_term
+    # lower_pan
+    g[6] = k_shaft_pan * (half_gap_pan - theta_pan_minus_theta_gear_pan) + shaft_torque_pan_term
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -202,12 +205,13 @@ def energy(t, x, u, p, m, e):
     """Write stored energy in J, power in and dissipated power in W into e.
 
     t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
-    see MODE_NAMES; e [3] in J, W and W.
+      see MODE_NAMES; e [3] in J, W and W.
+    e: stored, power_in, dissipated.
     """
     c = constants(p)
     forces = mass_and_forces(t, x, u, p, m, c)
-    shaft_torque_pan_term, d_shaft_pan_shaft_torque_pan_term = forces[0], forces[1]
-    shaft_torque_pan_term_3, k_shaft_pan_shaft_torque_pan_term_3 = forces[3], forces[4]
+    omega_gear_pan_minus_omega_pan, shaft_torque_pan_term = forces[0], forces[1]
+    shaft_torque_pan_term_2, k_shaft_pan_shaft_torque_pan_term_2 = forces[3], forces[4]
     omega_gear_pan_sq, force_gear_pan_term = forces[7], forces[8]
     omega_pan, omega_gear_pan, i_pan = x[1], x[3], x[4]
     u_pan = u[0]
@@ -217,33 +221,36 @@ def energy(t, x, u, p, m, e):
     side_pan_sq = side_pan * side_pan
     i_pan_sq = i_pan * i_pan
     omega_pan_sq = omega_pan * omega_pan
-    e[0] = (0.5 * J_pan * omega_pan_sq + 0.5 * L_pan * i_pan_sq + 0.5 * k_shaft_pan
-        * (shaft_torque_pan_term_3 * shaft_torque_pan_term_3) * side_pan_sq + 0.5 * mass_gear_pan
-        * omega_gear_pan_sq)
-    e[1] = i_pan * u_pan
-    twist_rate_pan = shaft_torque_pan_term * side_pan_sq
+    e[0] = (0.5 * J_pan * omega_pan_sq + 0.5 * L_pan * i_pan_sq
+        + 0.5 * k_shaft_pan * (shaft_torque_pan_term_2 * shaft_torque_pan_term_2) * side_pan_sq
+        + 0.5 * mass_gear_pan * omega_gear_pan_sq)  # stored
+    e[1] = i_pan * u_pan  # power_in
+    twist_rate_pan = omega_gear_pan_minus_omega_pan * side_pan_sq
     winding_loss_pan = R_pan * i_pan_sq
-    e[2] = (b_pan * omega_pan_sq + force_gear_pan_term * omega_gear_pan + twist_rate_pan
-        * (active_pan * d_shaft_pan_shaft_torque_pan_term - k_shaft_pan_shaft_torque_pan_term_3
-        * (1.0 - active_pan)) + winding_loss_pan)
+    # dissipated
+    e[2] = (b_pan * omega_pan_sq + force_gear_pan_term * omega_gear_pan
+        + twist_rate_pan * (active_pan * shaft_torque_pan_term
+        - k_shaft_pan_shaft_torque_pan_term_2 * (1.0 - active_pan)) + winding_loss_pan)
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def equation_error(t, x, u, p, m, r):
-    """Write torques that rows lack, then rates of other states, into r; x ends in accelerations.
+    """Write torques that rows lack, then other states' rates, into r; x ends in accelerations.
 
     t in s; x [7] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
-    see MODE_NAMES; r [3] in N m, then STATE_UNITS per s.
+      see MODE_NAMES; r [3] in N m, then STATE_UNITS per s.
+    x: STATE_NAMES, then given_accel_pan, given_accel_gear_pan.
+    r: torque_pan, torque_gear_pan, rate_of_i_pan.
     """
     c = constants(p)
     forces = mass_and_forces(t, x, u, p, m, c)
-    force_pan, force_gear_pan, rate_of_i_pan_term = forces[6], forces[9], forces[10]
+    force_pan, force_gear_pan, rate_of_i_pan = forces[6], forces[9], forces[10]
     given_accel_pan, given_accel_gear_pan = x[5], x[6]
     J_pan = p[0]
     mass_gear_pan = c[2]
-    r[0] = J_pan * given_accel_pan - force_pan
-    r[1] = -force_gear_pan + given_accel_gear_pan * mass_gear_pan
-    r[2] = rate_of_i_pan_term
+    r[0] = J_pan * given_accel_pan - force_pan  # torque_pan
+    r[1] = -force_gear_pan + given_accel_gear_pan * mass_gear_pan  # torque_gear_pan
+    r[2] = rate_of_i_pan
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -251,7 +258,13 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     """Write the non-zero derivatives of dx into fx, fu, fp and those of guards into gx, gp.
 
     t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
-    see MODE_NAMES; fx [5, 5]; fu [5, 1]; fp [5, 18]; gx [7, 5]; gp [7, 18].
+      see MODE_NAMES; fx [5, 5]; fu [5, 1]; fp [5, 18]; gx [7, 5]; gp [7, 18].
+    fx: rows and columns as STATE_NAMES.
+    fu: rows as STATE_NAMES, columns as INPUT_NAMES.
+    fp: rows as STATE_NAMES, columns as PARAMETERS.
+    gx: rows as g of guards, columns as STATE_NAMES.
+    gp: rows as g of guards, columns as PARAMETERS.
+    Where fp or gx is empty, it and what follows it is not computed.
     """
     theta_pan, omega_pan, theta_gear_pan, omega_gear_pan, i_pan = x[0], x[1], x[2], x[3], x[4]
     u_pan = u[0]
@@ -261,134 +274,149 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     J_motor_pan, N_pan = p[16], p[17]
     slide_pan, side_pan, active_pan = m[0], m[1], m[2]
     inverse_mass_pan = 1.0 / J_pan
-    active_pan_k_shaft_pan = active_pan * k_shaft_pan
-    accel_pan_by_theta_gear_pan = active_pan_k_shaft_pan * inverse_mass_pan
-    fx[1, 0] = -accel_pan_by_theta_gear_pan
+    holding_pan_by_theta_pan = active_pan * k_shaft_pan
+    accel_pan_by_theta_gear_pan = holding_pan_by_theta_pan * inverse_mass_pan
+    fx[1, 0] = -accel_pan_by_theta_gear_pan  # accel_pan_by_theta_pan
     N_pan_sq = N_pan * N_pan
     mass_gear_pan = J_motor_pan * N_pan_sq
     inverse_mass_gear_pan = 1.0 / mass_gear_pan
-    accel_gear_pan_by_theta_pan_term = inverse_mass_gear_pan * (slide_pan * slide_pan)
-    accel_gear_pan_by_theta_pan_term_2 = accel_gear_pan_by_theta_pan_term * active_pan_k_shaft_pan
-    fx[3, 0] = accel_gear_pan_by_theta_pan_term_2
-    fx[0, 1] = 1.0
-    active_pan_d_shaft_pan = active_pan * d_shaft_pan
-    fx[1, 1] = inverse_mass_pan * (-active_pan_d_shaft_pan - b_pan)
-    fx[3, 1] = accel_gear_pan_by_theta_pan_term * active_pan_d_shaft_pan
+    slide_pan_sq = slide_pan * slide_pan
+    inverse_mass_gear_pan_slide_pan_sq = inverse_mass_gear_pan * slide_pan_sq
+    accel_gear_pan_by_theta_gear_pan = (-holding_pan_by_theta_pan
+        * inverse_mass_gear_pan_slide_pan_sq)
+    fx[3, 0] = -accel_gear_pan_by_theta_gear_pan  # accel_gear_pan_by_theta_pan
+    fx[0, 1] = 1.0  # rate_of_theta_pan_by_omega_pan
+    balance_gear_pan_by_omega_pan = active_pan * d_shaft_pan
+    fx[1, 1] = inverse_mass_pan * (-b_pan - balance_gear_pan_by_omega_pan)  # accel_pan_by_omega_pan
+    # accel_gear_pan_by_omega_pan
+    fx[3, 1] = balance_gear_pan_by_omega_pan * inverse_mass_gear_pan_slide_pan_sq
     fx[1, 2] = accel_pan_by_theta_gear_pan
-    fx[3, 2] = -accel_gear_pan_by_theta_pan_term_2
-    fx[1, 3] = active_pan_d_shaft_pan * inverse_mass_pan
-    fx[2, 3] = 1.0
-    viscous_coefficient_pan_term = a_F_v_pan * slide_pan + 1.0
-    viscous_coefficient_pan = F_v_pan * viscous_coefficient_pan_term
-    slide_pan_viscous_coefficient_pan = slide_pan * viscous_coefficient_pan
-    stribeck_square_pan_term = 1.0 / (v_s_pan * v_s_pan)
-    stribeck_square_pan_term_2 = a_v_s_pan * slide_pan + 1.0
-    stribeck_square_pan_term_3 = 1.0 / (stribeck_square_pan_term_2 * stribeck_square_pan_term_2)
-    stribeck_square_pan_term_4 = stribeck_square_pan_term * stribeck_square_pan_term_3
-    coulomb_torque_pan_term = a_F_c_pan * slide_pan + 1.0
-    coulomb_torque_pan = F_c_pan * coulomb_torque_pan_term
-    accel_gear_pan_by_omega_gear_pan_term = a_F_s_pan * slide_pan + 1.0
+    fx[3, 2] = accel_gear_pan_by_theta_gear_pan
+    fx[1, 3] = balance_gear_pan_by_omega_pan * inverse_mass_pan  # accel_pan_by_omega_gear_pan
+    fx[2, 3] = 1.0  # rate_of_theta_gear_pan_by_omega_gear_pan
+    v_s_pan_inverse_sq = 1.0 / (v_s_pan * v_s_pan)
+    one_plus_a_v_s_pan_slide_pan = a_v_s_pan * slide_pan + 1.0
+    one_plus_a_v_s_pan_slide_pan_inverse_sq = (1.0 / (one_plus_a_v_s_pan_slide_pan
+        * one_plus_a_v_s_pan_slide_pan))
+    stribeck_square_pan_term = one_plus_a_v_s_pan_slide_pan_inverse_sq * v_s_pan_inverse_sq
+    one_plus_a_F_c_pan_slide_pan = a_F_c_pan * slide_pan + 1.0
+    coulomb_torque_pan = F_c_pan * one_plus_a_F_c_pan_slide_pan
+    one_plus_a_F_s_pan_slide_pan = a_F_s_pan * slide_pan + 1.0
     omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
-    stribeck_square_pan = omega_gear_pan_sq * stribeck_square_pan_term_4
-    accel_gear_pan_by_omega_gear_pan_term_2 = math.exp(-stribeck_square_pan)
-    accel_gear_pan_by_omega_gear_pan_term_3 = (accel_gear_pan_by_omega_gear_pan_term_2 * (F_s_pan
-        * accel_gear_pan_by_omega_gear_pan_term - coulomb_torque_pan))
-    accel_gear_pan_by_omega_gear_pan_term_4 = 2.0 * accel_gear_pan_by_omega_gear_pan_term_3
-    fx[3, 3] = (accel_gear_pan_by_theta_pan_term * (-active_pan_d_shaft_pan - slide_pan
-        * (-accel_gear_pan_by_omega_gear_pan_term_4 * omega_gear_pan * stribeck_square_pan_term_4
-        + slide_pan_viscous_coefficient_pan)))
-    K_t_pan_N_pan = K_t_pan * N_pan
-    L_pan_inverse = 1.0 / L_pan
-    fx[4, 3] = -K_t_pan_N_pan * L_pan_inverse
-    fx[3, 4] = K_t_pan_N_pan * accel_gear_pan_by_theta_pan_term
-    fx[4, 4] = -L_pan_inverse * R_pan
-    fu[4, 0] = L_pan_inverse
+    stribeck_square_pan = omega_gear_pan_sq * stribeck_square_pan_term
+    exp_minus_stribeck_square_pan = math.exp(-stribeck_square_pan)
+    accel_gear_pan_by_omega_gear_pan_term = (exp_minus_stribeck_square_pan * (F_s_pan
+        * one_plus_a_F_s_pan_slide_pan - coulomb_torque_pan))
+    accel_gear_pan_by_omega_gear_pan_term_2 = 2.0 * accel_gear_pan_by_omega_gear_pan_term
+    one_plus_a_F_v_pan_slide_pan = a_F_v_pan * slide_pan + 1.0
+    viscous_coefficient_pan = F_v_pan * one_plus_a_F_v_pan_slide_pan
+    fx[3, 3] = (inverse_mass_gear_pan_slide_pan_sq * (-balance_gear_pan_by_omega_pan - slide_pan
+        * (-accel_gear_pan_by_omega_gear_pan_term_2 * omega_gear_pan * stribeck_square_pan_term
+        + slide_pan * viscous_coefficient_pan)))  # accel_gear_pan_by_omega_gear_pan
+    rate_of_i_pan_by_u_pan = 1.0 / L_pan
+    balance_gear_pan_by_i_pan = K_t_pan * N_pan
+    # rate_of_i_pan_by_omega_gear_pan
+    fx[4, 3] = -balance_gear_pan_by_i_pan * rate_of_i_pan_by_u_pan
+    # accel_gear_pan_by_i_pan
+    fx[3, 4] = balance_gear_pan_by_i_pan * inverse_mass_gear_pan_slide_pan_sq
+    fx[4, 4] = -R_pan * rate_of_i_pan_by_u_pan  # rate_of_i_pan_by_i_pan
+    fu[4, 0] = rate_of_i_pan_by_u_pan
     if len(fp) == 0:
         return
-    shaft_torque_pan_term = omega_gear_pan - omega_pan
+    upper_pan_by_d_shaft_pan = omega_gear_pan - omega_pan
     half_gap_pan = 0.5 * gap_pan
-    shaft_torque_pan_term_2 = -theta_gear_pan + theta_pan
-    shaft_torque_pan_term_3 = -half_gap_pan * side_pan - shaft_torque_pan_term_2
-    shaft_torque_pan = (active_pan * (d_shaft_pan * shaft_torque_pan_term + k_shaft_pan
-        * shaft_torque_pan_term_3))
+    theta_pan_minus_theta_gear_pan = -theta_gear_pan + theta_pan
+    shaft_torque_pan_term = -half_gap_pan * side_pan - theta_pan_minus_theta_gear_pan
+    shaft_torque_pan = (active_pan * (d_shaft_pan * upper_pan_by_d_shaft_pan
+        + k_shaft_pan * shaft_torque_pan_term))
     force_pan = -b_pan * omega_pan + shaft_torque_pan
     accel_pan = force_pan * inverse_mass_pan
-    fp[1, 0] = -accel_pan * inverse_mass_pan
-    fp[1, 1] = -inverse_mass_pan * omega_pan
-    inverse_mass_gear_pan_slide_pan = inverse_mass_gear_pan * slide_pan
-    fp[3, 2] = (-inverse_mass_gear_pan_slide_pan * (-accel_gear_pan_by_omega_gear_pan_term_2
-        * coulomb_torque_pan_term + coulomb_torque_pan_term))
-    fp[3, 3] = (-accel_gear_pan_by_omega_gear_pan_term * accel_gear_pan_by_omega_gear_pan_term_2
-        * inverse_mass_gear_pan_slide_pan)
-    accel_gear_pan_by_v_s_pan_term = accel_gear_pan_by_omega_gear_pan_term_4 * omega_gear_pan_sq
-    fp[3, 4] = (-accel_gear_pan_by_v_s_pan_term * inverse_mass_gear_pan_slide_pan
-        * stribeck_square_pan_term_3 / (v_s_pan * v_s_pan * v_s_pan))
-    fp[3, 5] = -accel_gear_pan_by_theta_pan_term * omega_gear_pan * viscous_coefficient_pan_term
+    fp[1, 0] = -accel_pan * inverse_mass_pan  # accel_pan_by_J_pan
+    fp[1, 1] = -inverse_mass_pan * omega_pan  # accel_pan_by_b_pan
+    fp[3, 2] = (-inverse_mass_gear_pan_slide_pan_sq * slide_pan * (-exp_minus_stribeck_square_pan
+        * one_plus_a_F_c_pan_slide_pan + one_plus_a_F_c_pan_slide_pan))  # accel_gear_pan_by_F_c_pan
+    fp[3, 3] = (-exp_minus_stribeck_square_pan * inverse_mass_gear_pan_slide_pan_sq
+        * one_plus_a_F_s_pan_slide_pan * slide_pan)  # accel_gear_pan_by_F_s_pan
+    accel_gear_pan_by_v_s_pan_term = accel_gear_pan_by_omega_gear_pan_term_2 * omega_gear_pan_sq
+    # accel_gear_pan_by_v_s_pan
+    fp[3, 4] = (-accel_gear_pan_by_v_s_pan_term * inverse_mass_gear_pan_slide_pan_sq
+        * one_plus_a_v_s_pan_slide_pan_inverse_sq * slide_pan / (v_s_pan * v_s_pan * v_s_pan))
+    fp[3, 5] = (-inverse_mass_gear_pan_slide_pan_sq * omega_gear_pan * one_plus_a_F_v_pan_slide_pan
+        * slide_pan_sq)  # accel_gear_pan_by_F_v_pan
     F_c_pan_slide_pan = F_c_pan * slide_pan
-    fp[3, 6] = (-inverse_mass_gear_pan_slide_pan * (-F_c_pan_slide_pan
-        * accel_gear_pan_by_omega_gear_pan_term_2 + F_c_pan_slide_pan))
-    fp[3, 7] = -F_s_pan * accel_gear_pan_by_omega_gear_pan_term_2 * accel_gear_pan_by_theta_pan_term
-    fp[3, 8] = (-accel_gear_pan_by_theta_pan_term * accel_gear_pan_by_v_s_pan_term
-        * stribeck_square_pan_term / (stribeck_square_pan_term_2 * stribeck_square_pan_term_2
-        * stribeck_square_pan_term_2))
-    fp[3, 9] = -F_v_pan * inverse_mass_gear_pan_slide_pan * omega_gear_pan
-    half_side_pan = 0.5 * side_pan
-    fp[1, 10] = -accel_pan_by_theta_gear_pan * half_side_pan
-    fp[3, 10] = accel_gear_pan_by_theta_pan_term_2 * half_side_pan
-    active_pan_shaft_torque_pan_term_3 = active_pan * shaft_torque_pan_term_3
-    fp[1, 11] = active_pan_shaft_torque_pan_term_3 * inverse_mass_pan
-    fp[3, 11] = -accel_gear_pan_by_theta_pan_term * active_pan_shaft_torque_pan_term_3
-    active_pan_shaft_torque_pan_term = active_pan * shaft_torque_pan_term
-    fp[1, 12] = active_pan_shaft_torque_pan_term * inverse_mass_pan
-    fp[3, 12] = -accel_gear_pan_by_theta_pan_term * active_pan_shaft_torque_pan_term
-    fp[4, 13] = -(-K_t_pan_N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / (L_pan * L_pan)
-    fp[4, 14] = -L_pan_inverse * i_pan
-    N_pan_i_pan = N_pan * i_pan
-    fp[3, 15] = N_pan_i_pan * accel_gear_pan_by_theta_pan_term
-    L_pan_inverse_omega_gear_pan = L_pan_inverse * omega_gear_pan
-    fp[4, 15] = -L_pan_inverse_omega_gear_pan * N_pan
-    force_gear_pan = (K_t_pan * N_pan * i_pan - shaft_torque_pan - slide_pan
-        * (accel_gear_pan_by_omega_gear_pan_term_3 + coulomb_torque_pan + omega_gear_pan
-        * slide_pan_viscous_coefficient_pan))
-    accel_gear_pan = accel_gear_pan_by_theta_pan_term * force_gear_pan
-    fp[3, 16] = -N_pan_sq * accel_gear_pan * accel_gear_pan_by_theta_pan_term
-    fp[3, 17] = (accel_gear_pan_by_theta_pan_term * (-2.0 * J_motor_pan * N_pan * accel_gear_pan
-        + K_t_pan * i_pan))
-    fp[4, 17] = -K_t_pan * L_pan_inverse_omega_gear_pan
+    fp[3, 6] = (-inverse_mass_gear_pan_slide_pan_sq * slide_pan * (-F_c_pan_slide_pan
+        * exp_minus_stribeck_square_pan + F_c_pan_slide_pan))  # accel_gear_pan_by_a_F_c_pan
+    fp[3, 7] = (-F_s_pan * exp_minus_stribeck_square_pan * inverse_mass_gear_pan_slide_pan_sq
+        * slide_pan_sq)  # accel_gear_pan_by_a_F_s_pan
+    fp[3, 8] = (-accel_gear_pan_by_v_s_pan_term * inverse_mass_gear_pan_slide_pan_sq * slide_pan_sq
+        * v_s_pan_inverse_sq / (one_plus_a_v_s_pan_slide_pan * one_plus_a_v_s_pan_slide_pan
+        * one_plus_a_v_s_pan_slide_pan))  # accel_gear_pan_by_a_v_s_pan
+    omega_gear_pan_slide_pan = omega_gear_pan * slide_pan
+    # accel_gear_pan_by_a_F_v_pan
+    fp[3, 9] = -F_v_pan * inverse_mass_gear_pan_slide_pan_sq * omega_gear_pan_slide_pan
+    balance_gear_pan_by_gap_pan = 0.5 * holding_pan_by_theta_pan * side_pan
+    fp[1, 10] = -balance_gear_pan_by_gap_pan * inverse_mass_pan  # accel_pan_by_gap_pan
+    # accel_gear_pan_by_gap_pan
+    fp[3, 10] = balance_gear_pan_by_gap_pan * inverse_mass_gear_pan_slide_pan_sq
+    balance_gear_pan_by_k_shaft_pan = -active_pan * shaft_torque_pan_term
+    fp[1, 11] = -balance_gear_pan_by_k_shaft_pan * inverse_mass_pan  # accel_pan_by_k_shaft_pan
+    # accel_gear_pan_by_k_shaft_pan
+    fp[3, 11] = balance_gear_pan_by_k_shaft_pan * inverse_mass_gear_pan_slide_pan_sq
+    balance_gear_pan_by_d_shaft_pan = -active_pan * upper_pan_by_d_shaft_pan
+    fp[1, 12] = -balance_gear_pan_by_d_shaft_pan * inverse_mass_pan  # accel_pan_by_d_shaft_pan
+    # accel_gear_pan_by_d_shaft_pan
+    fp[3, 12] = balance_gear_pan_by_d_shaft_pan * inverse_mass_gear_pan_slide_pan_sq
+    fp[4, 13] = (-(-R_pan * i_pan - balance_gear_pan_by_i_pan * omega_gear_pan
+        + u_pan) / (L_pan * L_pan))  # rate_of_i_pan_by_L_pan
+    fp[4, 14] = -i_pan * rate_of_i_pan_by_u_pan  # rate_of_i_pan_by_R_pan
+    balance_gear_pan_by_K_t_pan = N_pan * i_pan
+    # accel_gear_pan_by_K_t_pan
+    fp[3, 15] = balance_gear_pan_by_K_t_pan * inverse_mass_gear_pan_slide_pan_sq
+    omega_gear_pan_rate_of_i_pan_by_u_pan = omega_gear_pan * rate_of_i_pan_by_u_pan
+    fp[4, 15] = -N_pan * omega_gear_pan_rate_of_i_pan_by_u_pan  # rate_of_i_pan_by_K_t_pan
+    force_gear_pan = (K_t_pan * N_pan * i_pan - shaft_torque_pan
+        - slide_pan * (accel_gear_pan_by_omega_gear_pan_term + coulomb_torque_pan
+        + omega_gear_pan_slide_pan * viscous_coefficient_pan))
+    accel_gear_pan = force_gear_pan * inverse_mass_gear_pan_slide_pan_sq
+    # accel_gear_pan_by_J_motor_pan
+    fp[3, 16] = -N_pan_sq * accel_gear_pan * inverse_mass_gear_pan_slide_pan_sq
+    fp[3, 17] = (inverse_mass_gear_pan_slide_pan_sq * (-2.0 * J_motor_pan * N_pan * accel_gear_pan
+        + K_t_pan * i_pan))  # accel_gear_pan_by_N_pan
+    fp[4, 17] = -K_t_pan * omega_gear_pan_rate_of_i_pan_by_u_pan  # rate_of_i_pan_by_N_pan
     if len(gx) == 0:
         return
-    gx[0, 0] = active_pan_k_shaft_pan
-    gx[3, 0] = -1.0
-    gx[5, 0] = -k_shaft_pan
-    gx[6, 0] = -k_shaft_pan
-    gx[0, 1] = active_pan_d_shaft_pan
-    gx[5, 1] = -d_shaft_pan
-    gx[6, 1] = -d_shaft_pan
-    gx[0, 2] = -active_pan_k_shaft_pan
-    gx[3, 2] = 1.0
-    gx[5, 2] = k_shaft_pan
-    gx[6, 2] = k_shaft_pan
-    gx[0, 3] = -active_pan_d_shaft_pan
-    gx[5, 3] = d_shaft_pan
-    gx[6, 3] = d_shaft_pan
-    gx[0, 4] = K_t_pan_N_pan
-    gp[1, 3] = a_F_s_pan + 1.0
-    gp[2, 3] = 1.0 - a_F_s_pan
-    gp[1, 7] = F_s_pan
-    gp[2, 7] = -F_s_pan
-    gp[0, 10] = active_pan_k_shaft_pan * half_side_pan
-    gp[4, 10] = 0.5
-    half_k_shaft_pan = 0.5 * k_shaft_pan
-    gp[5, 10] = -half_k_shaft_pan
-    gp[6, 10] = half_k_shaft_pan
-    gp[0, 11] = -active_pan_shaft_torque_pan_term_3
-    gp[5, 11] = -half_gap_pan - shaft_torque_pan_term_2
-    gp[6, 11] = half_gap_pan + theta_gear_pan - theta_pan
-    gp[0, 12] = -active_pan_shaft_torque_pan_term
-    gp[5, 12] = shaft_torque_pan_term
-    gp[6, 12] = shaft_torque_pan_term
-    gp[0, 15] = N_pan_i_pan
-    gp[0, 17] = K_t_pan * i_pan
+    gx[0, 0] = holding_pan_by_theta_pan
+    gx[3, 0] = -1.0  # separation_pan_by_theta_pan
+    gx[5, 0] = -k_shaft_pan  # upper_pan_by_theta_pan
+    gx[6, 0] = -k_shaft_pan  # lower_pan_by_theta_pan
+    gx[0, 1] = balance_gear_pan_by_omega_pan  # holding_pan_by_omega_pan
+    gx[5, 1] = -d_shaft_pan  # upper_pan_by_omega_pan
+    gx[6, 1] = -d_shaft_pan  # lower_pan_by_omega_pan
+    gx[0, 2] = -holding_pan_by_theta_pan  # holding_pan_by_theta_gear_pan
+    gx[3, 2] = 1.0  # separation_pan_by_theta_gear_pan
+    gx[5, 2] = k_shaft_pan  # upper_pan_by_theta_gear_pan
+    gx[6, 2] = k_shaft_pan  # lower_pan_by_theta_gear_pan
+    gx[0, 3] = -balance_gear_pan_by_omega_pan  # holding_pan_by_omega_gear_pan
+    gx[5, 3] = d_shaft_pan  # upper_pan_by_omega_gear_pan
+    gx[6, 3] = d_shaft_pan  # lower_pan_by_omega_gear_pan
+    gx[0, 4] = balance_gear_pan_by_i_pan  # holding_pan_by_i_pan
+    gp[1, 3] = a_F_s_pan + 1.0  # forward_pan_by_F_s_pan
+    gp[2, 3] = 1.0 - a_F_s_pan  # backward_pan_by_F_s_pan
+    gp[1, 7] = F_s_pan  # forward_pan_by_a_F_s_pan
+    gp[2, 7] = -F_s_pan  # backward_pan_by_a_F_s_pan
+    gp[0, 10] = balance_gear_pan_by_gap_pan  # holding_pan_by_gap_pan
+    gp[4, 10] = 0.5  # half_gap_pan_by_gap_pan
+    lower_pan_by_gap_pan = 0.5 * k_shaft_pan
+    gp[5, 10] = -lower_pan_by_gap_pan  # upper_pan_by_gap_pan
+    gp[6, 10] = lower_pan_by_gap_pan
+    gp[0, 11] = balance_gear_pan_by_k_shaft_pan  # holding_pan_by_k_shaft_pan
+    gp[5, 11] = -half_gap_pan - theta_pan_minus_theta_gear_pan  # upper_pan_by_k_shaft_pan
+    gp[6, 11] = half_gap_pan + theta_gear_pan - theta_pan  # lower_pan_by_k_shaft_pan
+    gp[0, 12] = balance_gear_pan_by_d_shaft_pan  # holding_pan_by_d_shaft_pan
+    gp[5, 12] = upper_pan_by_d_shaft_pan
+    gp[6, 12] = upper_pan_by_d_shaft_pan  # lower_pan_by_d_shaft_pan
+    gp[0, 15] = balance_gear_pan_by_K_t_pan  # holding_pan_by_K_t_pan
+    gp[0, 17] = K_t_pan * i_pan  # holding_pan_by_N_pan
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -396,11 +424,12 @@ def outputs(t, x, u, p, y):
     """Write the measured signals into y.
 
     t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; y [2] in
-    OUTPUT_UNITS.
+      OUTPUT_UNITS.
+    y: reading_theta_pan, reading_i_pan.
     """
     theta_pan, i_pan = x[0], x[4]
-    y[0] = theta_pan
-    y[1] = i_pan
+    y[0] = theta_pan  # reading_theta_pan
+    y[1] = i_pan  # reading_i_pan
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -408,10 +437,10 @@ def output_jacobian(t, x, u, p, yx, yp):
     """Write the non-zero derivatives of outputs by state and parameter.
 
     t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; yx [2,
-    5]; yp [2, 18].
+      5]; yp [2, 18].
     """
-    yx[0, 0] = 1.0
-    yx[1, 4] = 1.0
+    yx[0, 0] = 1.0  # reading_theta_pan_by_theta_pan
+    yx[1, 4] = 1.0  # reading_i_pan_by_i_pan
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -428,9 +457,10 @@ def margins(p, margin):
     """Write by how much the parameters meet every row of REQUIREMENTS into margin.
 
     p [18] in the units of PARAMETERS; margin [1] in units of what is compared.
+    margin: requirement_0.
     """
     F_c_pan, F_s_pan = p[2], p[3]
-    margin[0] = -F_c_pan + F_s_pan
+    margin[0] = -F_c_pan + F_s_pan  # requirement_0
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -464,6 +494,10 @@ def state_derivative(t, x, u, p, dx):
     m = np.empty(len(MODE_NAMES))
     initial_modes(t, x, u, p, m)
     mode_derivative(t, x, u, p, m, dx)
+
+
+# What the field calls some of these functions.
+vector_field, events, inverse_dynamics = mode_derivative, guards, equation_error
 
 
 # What follows is for fits and diagnoses; no function above uses it.
@@ -524,4 +558,4 @@ EFFECTS = (
     ("dc_motor", "pan", ("L_pan", "R_pan", "K_t_pan", "J_motor_pan", "N_pan"), (), (),
      "geared DC motor", "thesis Eq. 3.10, Eq. 3.11 with erratum 8", "", False),
 )
-# END sha256 88cc51919a9217f3f7d77f91343ba8e23ac8cd1289dcc2c4398592fd78e84d45
+# END sha256 54fca91b08bb62e4bbac0c6bf12ae7163c27a7a19a7a8eb1560737fef0ceac7a

@@ -40,7 +40,6 @@ class EventMachine:
             0,
             0,
             0,
-            0,
             self.p,
             none,
             model.friction_rates,

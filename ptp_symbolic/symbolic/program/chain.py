@@ -12,7 +12,7 @@ import sympy as sp
 from ptp_symbolic.symbolic.derivation.contributions import slope_symbol
 from ptp_symbolic.symbolic.derivation.differentiation import derivative, symbols_of
 from ptp_symbolic.symbolic.derivation.equations import Equations
-from ptp_symbolic.symbolic.program.sharing import Line
+from ptp_symbolic.symbolic.program.sharing import Line, if_shared
 
 
 @dataclass(frozen=True)
@@ -21,24 +21,37 @@ class ChainRule:
 
     `lines` defines the names; `slopes` finds them by function and variable, for the functions that
     depend on the state. `constants` are functions of the parameters alone; `weights` are, by
-    parameter, the constants that depend on it with their derivatives.
+    parameter, the constants that depend on it with their derivatives; `outer` are derivatives by
+    functions that are defined already.
     """
 
     lines: list[Line] = field(default_factory=list)
     slopes: dict[tuple[sp.Symbol, sp.Symbol], sp.Symbol] = field(default_factory=dict)
     constants: list[sp.Symbol] = field(default_factory=list)
     weights: dict[sp.Symbol, dict[sp.Symbol, sp.Symbol]] = field(default_factory=dict)
+    outer: set[sp.Symbol] = field(default_factory=set)
 
-    def partial(self, expression: sp.Expr, variable: sp.Symbol) -> sp.Expr:
+    def partial(self, expression: sp.Expr, variable: sp.Symbol, name: str | None = None) -> sp.Expr:
         """Derivative of `expression` by `variable`, the other constants held, also by way of the
-        functions of the state in it.
+        functions of the state in it. With the `name` of the expression its derivatives by these
+        are definitions.
         """
         result = derivative(expression, variable)
         for symbol in sorted(symbols_of(expression), key=str):
             slope = self.slopes.get((symbol, variable))
             if slope is not None:
-                result += derivative(expression, symbol) * slope
+                outer = derivative(expression, symbol)
+                result += (outer if name is None else self._outer(name, symbol, outer)) * slope
         return result
+
+    def _outer(self, name: str, symbol: sp.Symbol, value: sp.Expr) -> sp.Expr:
+        if value.is_Atom:
+            return value
+        own = if_shared(f"{name}_by_{symbol}")
+        if own not in self.outer:
+            self.outer.add(own)
+            self.lines.append((str(own), value))
+        return own
 
     def derivative(self, expression: sp.Expr, variable: sp.Symbol) -> sp.Expr:
         """Derivative of `expression` by `variable`, also by way of all named functions in it."""
@@ -71,7 +84,7 @@ def chain_rule(equations: Equations) -> ChainRule:
             rule.constants.append(symbol)
             continue
         for variable in (*equations.state_symbols, *inputs, *parameters, *rule.constants):
-            value = rule.partial(term, variable)
+            value = rule.partial(term, variable, str(symbol))
             if value != 0:
                 name = slope_symbol(symbol, variable)
                 rule.slopes[symbol, variable] = name

@@ -16,7 +16,7 @@ from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
 from ptp_symbolic.symbolic.effect_interface.place import slide
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.program.chain import ChainRule, chain_rule
-from ptp_symbolic.symbolic.program.sharing import Line
+from ptp_symbolic.symbolic.program.sharing import Line, if_shared
 from ptp_symbolic.symbolic.simplify.solve import inverse_values, partner_of, solved
 from ptp_symbolic.symbolic.symbols import ZERO, real
 
@@ -178,10 +178,11 @@ def acceleration_slopes(
     equations: Equations, solve: Solve, variables: Iterable[sp.Symbol]
 ) -> Slopes:
     """Derivatives of every acceleration by `variables`, from M a = F without inverting M."""
-    chain, lines = solve.chain, list(solve.chain.lines)
+    chain = solve.chain
+    lines: list[Line] = []
     by: dict[sp.Symbol, list[sp.Expr]] = {}
     for variable in (*chain.constants, *variables):
-        values = _acceleration_partials(equations, solve, variable)
+        values = _acceleration_partials(equations, solve, variable, lines)
         for constant, weight in chain.weights.get(variable, {}).items():
             values = [v + weight * b for v, b in zip(values, by[constant], strict=True)]
         by[variable] = []
@@ -189,19 +190,26 @@ def acceleration_slopes(
             name = slope_symbol(acceleration, variable)
             by[variable].append(name if value != 0 else ZERO)
             lines += [(str(name), value)] if value != 0 else []
-    return Slopes(tuple(lines), by)
+    return Slopes((*chain.lines, *lines), by)
 
 
 def _acceleration_partials(
-    equations: Equations, solve: Solve, variable: sp.Symbol
+    equations: Equations, solve: Solve, variable: sp.Symbol, lines: list[Line]
 ) -> list[sp.Expr]:
-    """Derivative of every acceleration by `variable`, the other constants held."""
+    """Derivative of every acceleration by `variable`, the other constants held. That of the balance
+    F - M a of every row joins `lines`.
+    """
     values = dict(solve.definitions)
     right = []
-    for i in range(len(equations.rates)):
-        term = solve.chain.partial(values[str(solve.force[i])], variable)
+    for i, rate in enumerate(equations.rates):
+        force = str(solve.force[i])
+        term = solve.chain.partial(values[force], variable, force)
         for j, acceleration in enumerate(solve.accelerations):
             term -= solve.chain.partial(equations.mass_matrix[i, j], variable) * acceleration
+        if not term.is_Atom:
+            name = if_shared(f"balance_{kinematics.place_of(rate)}_by_{variable}")
+            lines.append((str(name), term))
+            term = name
         right.append(term)
     return solve.solve(right)
 

@@ -12,6 +12,7 @@ from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.program.sharing import Line, share
 from ptp_symbolic.symbolic.program.term_names import vocabulary
 
+GIVEN = "given_"  # before the names of accelerations that are arguments
 MODE_ARGUMENTS = "t, x, u, p, m"
 ENTRY = re.compile(r"(\w+)\[(\d+)(?:, (\d+))?\]")
 

@@ -9,6 +9,7 @@ from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.program import dynamics
 from ptp_symbolic.symbolic.program.impacts import impact_expressions
 from ptp_symbolic.symbolic.program.kernel import (
+    GIVEN,
     MODE_ARGUMENTS,
     Kernel,
     Part,
@@ -33,7 +34,7 @@ DOCS = {
     "e": ("energy", "Write stored energy in J, power in and dissipated power in W into e."),
     "r": (
         "equation_error",
-        "Write torques that rows lack, then rates of other states, into r; x ends in accelerations.",
+        "Write torques that rows lack, then other states' rates, into r; x ends in accelerations.",
     ),
 }
 
@@ -60,7 +61,7 @@ def motion(
     """Vector field, guards, energy and residual, their terms shared: those of the parameters alone
     are `constants`; those that the residual has in common with others, `mass_and_forces`.
     """
-    given = [real(f"given_{acceleration}") for acceleration in solve.accelerations]
+    given = [real(f"{GIVEN}{acceleration}") for acceleration in solve.accelerations]
     written = {
         "dx": dynamics.state_rates(equations, solve),
         "g": guards,

@@ -13,6 +13,16 @@ Line = tuple[str, sp.Expr]
 MAX_NAME = 40
 ENTRY = "["  # in the targets that are entries of arrays
 PREFIX = "shared:"  # of names yet to be found, which no machine uses
+LONGEST_SUM = 3  # parts of a sum that its name says
+POWERS = {
+    2: "sq",
+    3: "cubed",
+    -1: "inverse",
+    -2: "inverse_sq",
+    -3: "inverse_cubed",
+    sp.Rational(1, 2): "root",
+}
+TOLD = "="  # before the name of a term that is inlined where it is used once
 MULTIPLES = {2: "twice", 3: "thrice", sp.Rational(1, 2): "half"}
 
 
@@ -42,6 +52,11 @@ class Vocabulary:
             return power.base**2 if even else power.base
 
         return expression.replace(is_power, reduced)
+
+
+def if_shared(name: str) -> sp.Symbol:
+    """The symbol of a definition that is called `name` where more than one line uses it."""
+    return real(f"{PREFIX}{TOLD}{name}")
 
 
 def share(definitions: Sequence[Line], outputs: Sequence[Line], words: Vocabulary) -> list[Line]:
@@ -93,7 +108,7 @@ def _distinct(
             continue
         first[symbol] = known
         if value in values:
-            names[known] = min(names[known], name, key=len)
+            names[known] = min(names[known], name, key=lambda n: (n.startswith(PREFIX), len(n)))
     last = {symbol: real(name) for symbol, name in names.items()}
     lines = [(names[symbol], value.xreplace(last)) for value, symbol in values.items()]
     return lines, [e.xreplace(first).xreplace(last) for e in outputs]
@@ -286,6 +301,7 @@ def _natural(symbol: sp.Symbol) -> list[object]:
 def _renamed(lines: Iterable[Line], kept: set[str], words: Mapping[str, str]) -> list[Line]:
     lines = list(lines)
     final_use = _first_target(lines, words)
+    entries = {str(e): words.get(t) for t, e in reversed(lines) if ENTRY in t and e.is_Symbol}
     names: dict[sp.Symbol, sp.Symbol] = {}
     taken = {str(s) for _, e in lines for s in e.free_symbols} | kept
     result: list[Line] = []
@@ -294,7 +310,9 @@ def _renamed(lines: Iterable[Line], kept: set[str], words: Mapping[str, str]) ->
         if not name.startswith(PREFIX):
             result.append((name, expression))
             continue
-        readable = _unused(_describe(expression) or f"{final_use[name]}_term", taken)
+        told = name.removeprefix(PREFIX + TOLD) if name.startswith(PREFIX + TOLD) else None
+        own = told or entries.get(name) or _describe(expression) or f"{final_use[name]}_term"
+        readable = _unused(own, taken)
         taken.add(readable)
         names[real(name)] = real(readable)
         result.append((readable, expression))
@@ -322,32 +340,54 @@ def _unused(name: str, taken: set[str]) -> str:
 
 def _describe(expression: sp.Expr) -> str | None:
     """A name such as ``cos_tilt`` or ``omega_pan_sq``, or None where none would be readable."""
-    if isinstance(expression, sp.sin | sp.cos | sp.exp) and expression.args[0].is_Symbol:
-        word = type(expression).__name__
-        return f"{word}_{str(expression.args[0]).removeprefix('theta_')}"
-    if expression.is_Pow and expression.base.is_Symbol:
-        suffix = {2: "sq", 3: "cubed", -1: "inverse"}.get(expression.exp)
-        return None if suffix is None else f"{expression.base}_{suffix}"
+    name = _words(expression)
+    return name if name is not None and len(name) <= MAX_NAME else None
+
+
+def _words(expression: sp.Expr) -> str | None:
+    """An expression of named things in words; None where there are no words for a part of it."""
+    if expression.is_Symbol or expression == sp.pi:
+        return str(expression)
+    if isinstance(expression, sp.sin | sp.cos | sp.exp | sp.Abs | sp.sign):
+        argument, prefix = expression.args[0], type(expression).__name__.lower()
+        word = _words(argument)
+        return None if word is None else f"{prefix}_{word.removeprefix('theta_')}"
+    if expression.is_Pow:
+        base, suffix = _words(expression.base), POWERS.get(expression.exp)
+        return f"{base}_{suffix}" if base and suffix else None
     if expression.is_Mul:
-        coefficient, product = expression.as_coeff_Mul()
-        factors = sp.Mul.make_args(product)
-        if abs(coefficient) == 1 or abs(coefficient) in MULTIPLES:
-            prefix = ["minus"] if coefficient.is_negative else []
-            prefix += [MULTIPLES[abs(coefficient)]] if abs(coefficient) != 1 else []
-            return _joined(prefix, "", factors)
-    if (
-        expression.is_Add
-        and len(expression.args) == 2
-        and all(a.is_Symbol for a in expression.args)
-    ):
-        return _joined([], "plus", expression.args)
-    return None
+        return _product_in_words(expression)
+    return _sum_in_words(expression) if expression.is_Add else None
 
 
-def _joined(prefix: list[str], between: str, symbols: Sequence[sp.Basic]) -> str | None:
-    """The names of `symbols` as one name; None where it gets long or something is no symbol."""
-    if not all(symbol.is_Symbol for symbol in symbols):
+def _product_in_words(product: sp.Expr) -> str | None:
+    """``twice_b_pan_omega_pan``; what is divided by comes last, after a `per`."""
+    coefficient, rest = product.as_coeff_Mul()
+    size, factors = abs(coefficient), sp.Mul.make_args(rest)
+    if size != 1 and size not in MULTIPLES:
         return None
-    parts = sorted(map(str, symbols))
-    name = "_".join([*prefix, f"_{between}_".join(parts) if between else "_".join(parts)])
-    return name if len(name) <= MAX_NAME else None
+    below = [1 / f for f in factors if f.is_Pow and f.exp.is_negative and len(factors) > 1]
+    above = [f for f in factors if 1 / f not in below]
+    words = [[_words(f) for f in each] for each in (above, below)]
+    if None in words[0] + words[1]:
+        return None
+    prefix = ["minus"] if coefficient.is_negative else []
+    prefix += [MULTIPLES[size]] if size != 1 else []
+    parts = ["_".join([*prefix, *sorted(map(str, words[0]))]), *sorted(map(str, words[1]))]
+    return "_per_".join(part for part in parts if part)
+
+
+def _sum_in_words(total: sp.Expr) -> str | None:
+    """``one_plus_a_minus_b``, of at most LONGEST_SUM parts."""
+    constant, rest = total.as_coeff_Add()
+    terms = sp.Add.make_args(rest)
+    if constant not in (0, 1, -1) or len(terms) + abs(constant) > LONGEST_SUM:
+        return None
+    signed = [(bool(t.as_coeff_Mul()[0].is_negative), t) for t in terms]
+    words = sorted((minus, str(_words(-t if minus else t))) for minus, t in signed)
+    if any(_words(-t if minus else t) is None for minus, t in signed):
+        return None
+    if constant != 0:
+        words = sorted([(bool(constant < 0), "one"), *words], key=lambda word: word[0])
+    text = "".join(f"_{'minus' if minus else 'plus'}_{word}" for minus, word in words)
+    return text.removeprefix("_plus_").removeprefix("_")

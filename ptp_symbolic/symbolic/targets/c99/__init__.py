@@ -198,7 +198,9 @@ def _prototype_comment(kernel: Kernel) -> list[str]:
         if argument != "t":
             shape = ", ".join(map(str, kernel.vectors.shape(argument)))
             shapes.append(f"{argument} [{shape}]")
-    return [f"/* {_comment(kernel.doc)} {'; '.join(shapes)}. */"]
+    optional = ", then ".join(kernel.optional)
+    note = f" Pass 0 for what is not asked for: {optional}." if optional else ""
+    return [f"/* {_comment(kernel.doc)} {'; '.join(shapes)}.{note} */"]
 
 
 def _flat(kernel: Kernel, entry: Entry) -> int:

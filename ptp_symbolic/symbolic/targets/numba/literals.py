@@ -9,7 +9,8 @@ TEXT_WIDTH = 80
 WIDTH = 100
 UNBROKEN = "\0"  # stands for a space at which a line must not end
 LITERAL = re.compile(r'"(?:[^"\\]|\\.)*"')
-OPERAND = re.compile(r" (?![-+*/] |if |else )")  # the spaces that are not before an operator
+TERMS = re.compile(r" (?![-+] |if |else )")  # the spaces that are not before such an operator
+OPERANDS = re.compile(r" (?![-+*/] |if |else )")
 
 
 def repr_text(value: str) -> str:
@@ -51,16 +52,28 @@ def listed(items: Iterable[str]) -> str:
     return f"{found[0]}," if len(found) == 1 else ", ".join(found)
 
 
-def assignment_text(target: str, source: str, width: int) -> str:
-    """An assignment in lines of `width`, broken before operators."""
+def assignment_text(target: str, source: str, width: int, meaning: str = "") -> str:
+    """An assignment in lines of `width`, broken before plus and minus, elsewhere where that does
+    not do; the `meaning` of the target is a comment.
+    """
     if len(target) + len(source) + 3 <= width:
-        return f"{target} = {source}"
-    text = OPERAND.sub(UNBROKEN, f"{target} = ({source})")
-    lines = _wrapped(text, width, "", "    ")
-    if max(map(len, lines.split("\n"))) <= width:
-        return lines
-    body = _wrapped(OPERAND.sub(UNBROKEN, f"{source})"), width, "    ", "    ")
-    return f"{target} = (\n{body}"
+        return _commented(f"{target} = {source}", meaning, width)
+    source = f"({source})"
+    for operands in (TERMS, OPERANDS):
+        text = _wrapped(operands.sub(UNBROKEN, f"{target} = {source}"), width, "", "    ")
+        if max(map(len, text.split("\n"))) <= width:
+            return _commented(text, meaning, width)
+    text = _wrapped(OPERANDS.sub(UNBROKEN, source[1:]), width, "    ", "    ")
+    return _commented(f"{target} = (\n{text}", meaning, width)
+
+
+def _commented(text: str, meaning: str, width: int) -> str:
+    """`text` with a comment behind its last line, or above it where there is no room."""
+    if not meaning:
+        return text
+    last = text.rpartition("\n")[2]
+    comment = f"# {meaning}"
+    return f"{text}  {comment}" if len(last) + len(comment) + 2 <= width else f"{comment}\n{text}"
 
 
 def tuple_text(before: str, items: Iterable[str], width: int) -> str:

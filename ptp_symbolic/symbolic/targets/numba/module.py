@@ -2,11 +2,12 @@
 
 import hashlib
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from ptp_symbolic.symbolic.derivation.equations import Equations
-from ptp_symbolic.symbolic.program.kernel import Kernel, Part, used_names
+from ptp_symbolic.symbolic.program.kernel import GIVEN, Kernel, Part, used_names
 from ptp_symbolic.symbolic.program.program import Program, program
+from ptp_symbolic.symbolic.program.term_names import vocabulary
 from ptp_symbolic.symbolic.targets.numba.docstring import docstring
 from ptp_symbolic.symbolic.targets.numba.literals import (
     WIDTH,
@@ -29,6 +30,13 @@ NUMBA = Language(
         "pi": "math.pi",
     },
 )
+MATRICES = {
+    "fx": "rows and columns as STATE_NAMES",
+    "fu": "rows as STATE_NAMES, columns as INPUT_NAMES",
+    "fp": "rows as STATE_NAMES, columns as PARAMETERS",
+    "gx": "rows as g of guards, columns as STATE_NAMES",
+    "gp": "rows as g of guards, columns as PARAMETERS",
+}
 SEAL = "# END sha256 "
 INNER_WIDTH = WIDTH - 4
 ALLOCATES = '@njit(cache=True, error_model="numpy", nogil=True)\n'
@@ -38,6 +46,8 @@ WRITTEN_BY_PARTS = {
     "prepare": ["values = constants(p)", "for k in range(PREPARED):\n    c[k] = values[k]"],
     "mode_derivative": ["prepared_derivative(t, x, u, p, m, constants(p), dx)"],
 }
+OTHER_NAMES = """# What the field calls some of these functions.
+vector_field, events, inverse_dynamics = mode_derivative, guards, equation_error"""
 IMPLIED_MODES = ("m = np.empty(len(MODE_NAMES))", "initial_modes(t, x, u, p, m)")
 
 
@@ -53,7 +63,13 @@ def module_text(equations: Equations) -> str:
 def written(whole: Program) -> str:
     """Return a program as the source of a module."""
     modes = mode_functions_text(whole.has_modes, whole.has_rigid_contacts)
-    functions = [*map(_part, whole.parts), *map(_function, whole.kernels), modes]
+    words = vocabulary(whole.computed).targets
+    functions = [
+        *map(_part, whole.parts),
+        *(_function(kernel, words) for kernel in whole.kernels),
+        modes,
+        OTHER_NAMES,
+    ]
     body = "\n\n\n".join(functions)
     digest = hashlib.sha256(body.encode()).hexdigest()[:16]
     opening = docstring(whole.computed, whole.operations)
@@ -76,10 +92,11 @@ def _part(part: Part) -> str:
     return _compiled(INLINED, part.name, part.arguments, rows)
 
 
-def _function(kernel: Kernel) -> str:
-    """A compiled function that unpacks what it uses and assigns the lines of a kernel in turn."""
-    shapes = "; ".join(_described(kernel, argument) for argument in kernel.arguments)
-    rows = [f'"""{kernel.doc}\n\n{textwrap.fill(f"{shapes}.", INNER_WIDTH)}\n"""']
+def _function(kernel: Kernel, words: Mapping[str, str]) -> str:
+    """A compiled function that unpacks what it uses and assigns the lines of a kernel in turn, each
+    entry with its name.
+    """
+    rows = [f'"""{kernel.doc}\n\n{_table(kernel, words)}\n"""']
     if kernel.name in WRITTEN_BY_PARTS and kernel.lines:
         rows += WRITTEN_BY_PARTS[kernel.name]
         return _compiled(COMPILED, kernel.name, kernel.arguments, rows)
@@ -88,7 +105,10 @@ def _function(kernel: Kernel) -> str:
     rows += unpacking_text(kernel.vectors.unpacked(kernel.own), INNER_WIDTH)
     for optional, lines in kernel.sections(kernel.own):
         rows += [f"if len({optional}) == 0:\n    return"] if optional else []
-        rows += [assignment_text(str(t), NUMBA.expression(e), INNER_WIDTH) for t, e in lines]
+        for target, expression in lines:
+            source, meaning = NUMBA.expression(expression), words.get(str(target), "")
+            own = "" if source == meaning else meaning
+            rows.append(assignment_text(str(target), source, INNER_WIDTH, own))
     if not kernel.lines:
         rows.append("return")
     options = ALLOCATES if kernel.finds_modes else COMPILED
@@ -113,6 +133,33 @@ def _calls(kernel: Kernel) -> list[str]:
 def _compiled(options: str, name: str, arguments: Sequence[str], rows: Sequence[str]) -> str:
     head = f"{options}def {name}({', '.join(arguments)}):\n"
     return head + textwrap.indent("\n".join(rows), "    ")
+
+
+def _table(kernel: Kernel, words: Mapping[str, str]) -> str:
+    """Shapes, units and entries of the arguments of a kernel."""
+    shapes = "; ".join(_described(kernel, argument) for argument in kernel.arguments)
+    said = [f"{shapes}."]
+    for array in kernel.arguments:
+        names = _entries(kernel, array, words)
+        said += [f"{array}: {', '.join(names)}."] if names else []
+    if kernel.optional:
+        named = " or ".join(kernel.optional)
+        said.append(f"Where {named} is empty, it and what follows it is not computed.")
+    return "\n".join(textwrap.fill(each, INNER_WIDTH, subsequent_indent="  ") for each in said)
+
+
+def _entries(kernel: Kernel, array: str, words: Mapping[str, str]) -> list[str]:
+    """Names of the entries of an array that no constant of the module lists."""
+    if array in MATRICES:
+        return [MATRICES[array]]
+    if array == "c" and not kernel.reads(array):
+        return list(kernel.vectors.c)
+    if array == "x" and kernel.vectors.x[-1].startswith(GIVEN):
+        given = [name for name in kernel.vectors.x if name.startswith(GIVEN)]
+        return [f"STATE_NAMES, then {given[0]}", *given[1:]]
+    count = kernel.vectors.shape(array)[0] if array in kernel.vectors.rows else 0
+    names = [words.get(f"{array}[{k}]", "") for k in range(count)]
+    return names if all(names) else []
 
 
 def _described(kernel: Kernel, argument: str) -> str:
