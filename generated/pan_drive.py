@@ -32,7 +32,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "57f787f2efb4ccfa"
+MODEL_HASH = "a5c3efd44a400bab"
 NAME = "pan_drive"
 TITLE = "Pan drive of the thesis"
 # How many numbers `prepare` writes.
@@ -436,8 +436,8 @@ def outputs(t, x, u, p, y):
 def output_jacobian(t, x, u, p, yx, yp):
     """Write the non-zero derivatives of outputs by state and parameter.
 
-    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; yx [2,
-      5]; yp [2, 18].
+    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; yx
+      [2, 5]; yp [2, 18].
     """
     yx[0, 0] = 1.0  # reading_theta_pan_by_theta_pan
     yx[1, 4] = 1.0  # reading_i_pan_by_i_pan
@@ -558,4 +558,4 @@ EFFECTS = (
     ("dc_motor", "pan", ("L_pan", "R_pan", "K_t_pan", "J_motor_pan", "N_pan"), (), (),
      "geared DC motor", "thesis Eq. 3.10, Eq. 3.11 with erratum 8", "", False),
 )
-# END sha256 54fca91b08bb62e4bbac0c6bf12ae7163c27a7a19a7a8eb1560737fef0ceac7a
+# END sha256 85881d31da7851af62abb4480eed4785f908ea4d87e8bc01d69e513439fc4fb4

@@ -43,7 +43,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "9ce6ac8b4b386a4b"
+MODEL_HASH = "d41a8b69f7d722e7"
 NAME = "payload"
 TITLE = "Pan-tilt platform of the thesis with its payload"
 # How many numbers `prepare` writes.
@@ -470,8 +470,8 @@ def outputs(t, x, u, p, y):
 def output_jacobian(t, x, u, p, yx, yp):
     """Write the non-zero derivatives of outputs by state and parameter.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; yx [2,
-      4]; yp [2, 14].
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; yx
+      [2, 4]; yp [2, 14].
     """
     yx[0, 0] = 1.0  # reading_theta_pan_by_theta_pan
     yx[1, 1] = 1.0  # reading_theta_tilt_by_theta_tilt
@@ -534,4 +534,4 @@ EFFECTS = (
      "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
      "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
 )
-# END sha256 97ad91eda6e8cd34ca033878ed187d071aeb7c48b448ccf828013588aa21ef06
+# END sha256 fb5cccacd041904f11cbd5fdf82485c8bbe77da251d03b06536aa078fe5ead24

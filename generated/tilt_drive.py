@@ -60,7 +60,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "14b5f3288f479793"
+MODEL_HASH = "fee3db7e838d1994"
 NAME = "tilt_drive"
 TITLE = "Tilt drive of the thesis"
 # How many numbers `prepare` writes.
@@ -880,8 +880,8 @@ def outputs(t, x, u, p, y):
 def output_jacobian(t, x, u, p, yx, yp):
     """Write the non-zero derivatives of outputs by state and parameter.
 
-    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; yx [2,
-      3]; yp [2, 20].
+    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; yx
+      [2, 3]; yp [2, 20].
     """
     yx[0, 0] = 1.0  # reading_theta_tilt_by_theta_tilt
     yx[1, 2] = 1.0  # reading_i_tilt_by_i_tilt
@@ -994,4 +994,4 @@ EFFECTS = (
      "linear actuator with lead screw and linkage",
      "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6", "", False),
 )
-# END sha256 3cd80ee5b079b4b938544d7a3546314d10f89d6783b0a8049d674d25bb3f3fa3
+# END sha256 115f71661e26a6508164f5908929f621880b73a5614e55da3a8d3e28f334a24b

@@ -2,6 +2,7 @@
 
 import ast
 import os
+import re
 import subprocess
 import sys
 
@@ -72,6 +73,30 @@ def test_what_depends_on_parameters_alone_is_computed_once() -> None:
     }
     assert bodies["mode_derivative"] == 0
     assert bodies["constants"] > 20
+
+
+LONGEST = 2000  # lines of a module that a person is to read
+FEWEST_NAMED = 0.8  # of the terms that say what they are, and not where they are used
+
+
+def test_the_largest_module_reads_like_one_that_a_person_wrote() -> None:
+    """No name for a name or its negative; most names say what a term is."""
+    lines = (generated_folder() / "full.py").read_text().splitlines()
+    assert len(lines) <= LONGEST and max(map(len, lines)) <= 100
+    assigned = [found for line in lines if (found := re.match(r"    ([A-Za-z_]\w*) = (.*)", line))]
+    assert [found[0] for found in assigned if re.fullmatch(r"-?[A-Za-z_]\w*", found[2])] == []
+    names = {found[1] for found in assigned}
+    described = [name for name in names if not re.search(r"_term(_\d+)?(_|$)", name)]
+    assert len(described) >= FEWEST_NAMED * len(names)
+
+
+def test_no_kernel_allocates() -> None:
+    """Numba refuses to compile a function without its memory manager that allocates."""
+    for name in COMMITTED:
+        text = (generated_folder() / f"{name}.py").read_text()
+        heads = re.findall(r"@njit\((.*)\)\ndef (\w+)", text)
+        allocating = {function for options, function in heads if "_nrt=False" not in options}
+        assert allocating <= {"initial_modes", "state_derivative"}, name
 
 
 def test_gravity_may_be_set_like_any_parameter() -> None:

@@ -45,7 +45,6 @@ class Motion:
     alone, and `forces`.
     """
 
-    vectors: Vectors
     prepared: Part
     forces: Part
     kernels: tuple[Kernel, ...]
@@ -70,8 +69,29 @@ def motion(
     }
     outputs = [(f"{array}[{i}]", e) for array, own in written.items() for i, e in enumerate(own)]
     lines = share(solve.definitions, outputs, vocabulary(equations))
+    prepared, forces, own = _divided(lines, vectors)
+    extended = replace(prepared.vectors, x=(*vectors.x, *map(str, given)))
+    kernels = {
+        array: Kernel(
+            name,
+            (*MODE_ARGUMENTS.split(", "), array),
+            doc,
+            extended if array == "r" else prepared.vectors,
+            own[array],
+            parts=(prepared, forces),
+        )
+        for array, (name, doc) in DOCS.items()
+    }
+    first = (_prepare_kernel(prepared), _prepared_derivative(kernels["dx"], forces))
+    return Motion(prepared, forces, (*first, *kernels.values()))
+
+
+def _divided(
+    lines: Sequence[Line], vectors: Vectors
+) -> tuple[Part, Part, dict[str, tuple[Line, ...]]]:
+    """The parts `constants` and `mass_and_forces` of `lines`, and what is left, by array."""
     once, each = dynamics.prepared(lines, vectors.p)
-    entries = {a: [line for line in each if line[0].startswith(f"{a}[")] for a in written}
+    entries = {a: [line for line in each if line[0].startswith(f"{a}[")] for a in DOCS}
     needs = {a: {name for name, _ in needed(each, own)} for a, own in entries.items()}
     common = needs["r"] & (needs["dx"] | needs["g"] | needs["e"])
     block = tuple(line for line in each if line[0] in common)
@@ -84,21 +104,7 @@ def motion(
     doc = "Return what depends on the parameters alone."
     prepared = Part("constants", ("p",), doc, vectors, tuple(once), vectors.c)
     doc = "Return mass matrix, forces and what else the functions below have in common."
-    forces = Part("mass_and_forces", tuple("txupmc"), doc, vectors, block, results)
-    extended = replace(vectors, x=(*vectors.x, *map(str, given)))
-    kernels = {
-        a: Kernel(
-            name,
-            (*MODE_ARGUMENTS.split(", "), a),
-            doc,
-            extended if a == "r" else vectors,
-            own[a],
-            parts=(prepared, forces),
-        )
-        for a, (name, doc) in DOCS.items()
-    }
-    first = (_prepare_kernel(once, vectors), _prepared_derivative(kernels["dx"], forces))
-    return Motion(vectors, prepared, forces, (*first, *kernels.values()))
+    return prepared, Part("mass_and_forces", tuple("txupmc"), doc, vectors, block, results), own
 
 
 def _residual(
@@ -112,14 +118,15 @@ def _residual(
     return [*(solve.mass * sp.Matrix(given) - solve.force), *others]
 
 
-def _prepare_kernel(once: Sequence[Line], vectors: Vectors) -> Kernel:
-    """Kernel `prepare`: the lines that are done `once` per parameter set."""
-    entry = {name: f"c[{k}]" for k, name in enumerate(vectors.c)}
+def _prepare_kernel(prepared: Part) -> Kernel:
+    """Kernel `prepare`, which writes what is prepared into c."""
+    once = prepared.lines
+    entry = {name: f"c[{k}]" for k, name in enumerate(prepared.results)}
     inner = used_names(once)
     lines = [(name if name in inner else entry[name], e) for name, e in once]
     lines += [(target, real(name)) for name, target in entry.items() if name in inner]
     doc = "Write into c what prepared_derivative takes from the parameters alone."
-    return kernel("prepare", "p, c", doc, vectors, lines)
+    return kernel("prepare", "p, c", doc, prepared.vectors, lines)
 
 
 def _prepared_derivative(whole: Kernel, forces: Part) -> Kernel:

@@ -96,7 +96,7 @@ def program(equations: Equations) -> Program:
         _rows(equations, len(guards)),
     )
     own = motion(computed, solve, guards, energies(equations, solve), vectors)
-    vectors = own.vectors
+    vectors = own.prepared.vectors
     kernels = (
         *own.kernels,
         linearize_kernel(computed, solve, guards, vectors),

@@ -11,7 +11,6 @@ from ptp_symbolic.symbolic.symbols import real
 
 Line = tuple[str, sp.Expr]
 MAX_NAME = 40
-ENTRY = "["  # in the targets that are entries of arrays
 PREFIX = "shared:"  # of names yet to be found, which no machine uses
 LONGEST_SUM = 3  # parts of a sum that its name says
 POWERS = {
@@ -81,8 +80,10 @@ def share(definitions: Sequence[Line], outputs: Sequence[Line], words: Vocabular
     meant = [line for line in lines if line[0] in meanings]
     final = [(name, e) for (name, _), e in zip(outputs, ends, strict=True)]
     available, final = _without_aliases(shared, defined, meant, final)
-    ordered = _inlined(_once(_ordered(available, final)))
-    return _renamed(ordered, {name for name, _ in available}, words.targets)
+    targets = {target for target, _ in outputs}
+    ordered = _inlined(_once(_ordered(available, final), targets), targets)
+    entries = {e: words.targets.get(t) for t, e in reversed(ordered) if t in targets}
+    return _renamed(ordered, {name for name, _ in available}, words.targets, entries)
 
 
 def _functions_of(expressions: Iterable[sp.Expr]) -> list[Line]:
@@ -171,19 +172,19 @@ def _collect(expression: sp.Expr, parts: dict[sp.Expr, None]) -> None:
             _collect(part, parts)
 
 
-def _once(lines: Sequence[Line]) -> list[Line]:
-    """Lines without those whose value, or its negative, an earlier one has already."""
+def _once(lines: Sequence[Line], targets: set[str]) -> list[Line]:
+    """Lines whose value, or its negative, no earlier one has; all `targets` stay."""
     replaced: dict[sp.Symbol, sp.Expr] = {}
     values: dict[sp.Expr, sp.Symbol] = {}
     kept: list[Line] = []
     for target, expression in lines:
         value, symbol = expression.xreplace(replaced), real(target)
-        known = None if ENTRY in target else _known(value, values)
+        known = None if target in targets else _known(value, values)
         if known is not None:
             replaced[symbol] = known
             continue
         kept.append((target, value))
-        if ENTRY not in target:
+        if target not in targets:
             values[value] = symbol
     return kept
 
@@ -199,21 +200,21 @@ def _known(value: sp.Expr, values: Mapping[sp.Expr, sp.Symbol]) -> sp.Expr | Non
     return -values[-value] if -value in values else None
 
 
-def _inlined(lines: Sequence[Line]) -> list[Line]:
+def _inlined(lines: Sequence[Line], targets: set[str]) -> list[Line]:
     """Lines without terms that one other line uses once and that have no name of their own, and
-    without names that only an entry of an array is given.
+    without those that only give one of the `targets` its value.
     """
     uses: dict[sp.Symbol, int] = {}
     for _, expression in lines:
         for symbol in (each for each in sp.preorder_traversal(expression) if each.is_Symbol):
             uses[symbol] = uses.get(symbol, 0) + 1
-    given = {e for target, e in lines if ENTRY in target and e.is_Symbol}
+    given = {e for target, e in lines if target in targets and e.is_Symbol}
     put_in: dict[sp.Symbol, sp.Expr] = {}
     kept: list[Line] = []
     for target, expression in lines:
         value, symbol = expression.xreplace(put_in), real(target)
         alone = target.startswith(PREFIX) or symbol in given
-        if ENTRY not in target and alone and uses[symbol] == 1:
+        if target not in targets and alone and uses[symbol] == 1:
             put_in[symbol] = value
         else:
             kept.append((target, value))
@@ -298,10 +299,14 @@ def _natural(symbol: sp.Symbol) -> list[object]:
     return [(0, int(part), "") if part.isdigit() else (1, 0, part) for part in parts]
 
 
-def _renamed(lines: Iterable[Line], kept: set[str], words: Mapping[str, str]) -> list[Line]:
-    lines = list(lines)
+def _renamed(
+    lines: Sequence[Line],
+    kept: set[str],
+    words: Mapping[str, str],
+    entries: Mapping[sp.Expr, str | None],
+) -> list[Line]:
+    """Lines with readable names for the terms that have none; `entries` are names of values."""
     final_use = _first_target(lines, words)
-    entries = {str(e): words.get(t) for t, e in reversed(lines) if ENTRY in t and e.is_Symbol}
     names: dict[sp.Symbol, sp.Symbol] = {}
     taken = {str(s) for _, e in lines for s in e.free_symbols} | kept
     result: list[Line] = []
@@ -311,7 +316,7 @@ def _renamed(lines: Iterable[Line], kept: set[str], words: Mapping[str, str]) ->
             result.append((name, expression))
             continue
         told = name.removeprefix(PREFIX + TOLD) if name.startswith(PREFIX + TOLD) else None
-        own = told or entries.get(name) or _describe(expression) or f"{final_use[name]}_term"
+        own = told or entries.get(real(name)) or _describe(expression) or f"{final_use[name]}_term"
         readable = _unused(own, taken)
         taken.add(readable)
         names[real(name)] = real(readable)

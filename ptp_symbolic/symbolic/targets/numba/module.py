@@ -10,6 +10,7 @@ from ptp_symbolic.symbolic.program.program import Program, program
 from ptp_symbolic.symbolic.program.term_names import vocabulary
 from ptp_symbolic.symbolic.targets.numba.docstring import docstring
 from ptp_symbolic.symbolic.targets.numba.literals import (
+    UNBROKEN,
     WIDTH,
     assignment_text,
     tuple_text,
@@ -145,7 +146,8 @@ def _table(kernel: Kernel, words: Mapping[str, str]) -> str:
     if kernel.optional:
         named = " or ".join(kernel.optional)
         said.append(f"Where {named} is empty, it and what follows it is not computed.")
-    return "\n".join(textwrap.fill(each, INNER_WIDTH, subsequent_indent="  ") for each in said)
+    lines = [textwrap.fill(each, INNER_WIDTH, subsequent_indent="  ") for each in said]
+    return "\n".join(lines).replace(UNBROKEN, " ")
 
 
 def _entries(kernel: Kernel, array: str, words: Mapping[str, str]) -> list[str]:
@@ -173,7 +175,7 @@ def _described(kernel: Kernel, argument: str) -> str:
         "p": "in the units of PARAMETERS",
         "c": "of prepare",
     }
-    shape = ", ".join(map(str, vectors.shape(argument)))
+    shape = f",{UNBROKEN}".join(map(str, vectors.shape(argument)))
     if argument == "m":
         return f"m [{shape}], see MODE_NAMES"
     if argument in vectors.rows:
