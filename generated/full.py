@@ -80,7 +80,7 @@ with the functions named above, in order of use:
   i_pan' = (-K_t_pan*N_pan*omega_gear_pan - R_pan*i_pan + u_pan)/L_pan
   i_tilt' = (-K_t_tilt*omega_tilt*ratio_tilt - R_tilt*i_tilt + u_tilt)/L_tilt
 
-Operations of the state derivative: 697 as derived, 226 as written, 169 of them at every
+Operations of the state derivative: 697 as derived, 224 as written, 166 of them at every
 call where `prepare` does the others once per parameter set.
 
 Effects:
@@ -101,26 +101,18 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "713fd545849b4d95"
+MODEL_HASH = "1edd4bb87e7b9e79"
 NAME = "full"
 TITLE = "Both axes of the thesis, all drives"
 # How many numbers `prepare` writes.
-PREPARED = 16
+PREPARED = 19
 AXES = ("pan", "tilt")
 STATE_NAMES = (
-    "theta_pan",
-    "theta_tilt",
-    "omega_pan",
-    "omega_tilt",
-    "theta_gear_pan",
-    "omega_gear_pan",
-    "i_pan",
-    "i_tilt",
+    "theta_pan", "theta_tilt", "omega_pan", "omega_tilt", "theta_gear_pan", "omega_gear_pan",
+    "i_pan", "i_tilt",
 )
 STATE_UNITS = ("rad", "rad", "rad/s", "rad/s", "rad", "rad/s", "A", "A")
 STATE_INITIAL = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-# States without influence while these parameters are at their vanishing values.
-IDLE_STATES = ()
 INPUT_NAMES = ("u_pan", "u_tilt")
 INPUT_UNITS = ("V", "V")
 # Per input: index of the parameter by which it is late, or -1.
@@ -143,21 +135,6 @@ DOMAIN = (
     ("theta_tilt", "dead centre of the tilt linkage"),
     ("theta_tilt", "stroke end of the tilt actuator"),
 )
-# Relations: parameters, rule, strict; `margins` gives what is at least zero.
-REQUIREMENTS = (
-    (("F_c_pan", "F_s_pan"), "F_s is at least F_c; raise F_s or lower F_c", False),
-    (
-        ("l_ground_tilt", "l_min_tilt", "r_arm_tilt", "s_start_tilt"),
-        "the linkage closes, off its dead centres; change a length",
-        True,
-    ),
-    (("s_start_tilt", "s_max_tilt"), "s_start is at most s_max; change one of them", False),
-    (
-        ("lead_tilt", "d_screw_tilt", "f_screw_tilt"),
-        "the screw wedges unless f < pi d / lead; lower f_screw",
-        True,
-    ),
-)
 # Parameters: name, unit, default, lower and upper bound, meaning.
 PARAMETERS = (
     ("J_pan", "kg m^2", 0.01083, 1e-12, 10000.0, "inertia of the pan body about z"),
@@ -177,38 +154,14 @@ PARAMETERS = (
     ("F_s_pan", "N m", 0.675, 0.0, 10000.0, "static (breakaway) friction torque"),
     ("v_s_pan", "rad/s", 0.016, 1e-06, 1000.0, "Stribeck speed"),
     ("F_v_pan", "N m s/rad", 13.9424, 0.0, 10000.0, "viscous part"),
-    (
-        "a_F_c_pan",
-        "1",
-        -0.05581007913369427,
-        -0.95,
-        0.95,
-        "relative half difference of Coulomb friction",
-    ),
-    (
-        "a_F_s_pan",
-        "1",
-        -0.17362962962962966,
-        -0.95,
-        0.95,
-        "relative half difference of static friction",
-    ),
-    (
-        "a_v_s_pan",
-        "1",
-        -0.006249999999999962,
-        -0.95,
-        0.95,
-        "relative half difference of Stribeck speed",
-    ),
-    (
-        "a_F_v_pan",
-        "1",
-        -0.025677071379389464,
-        -0.95,
-        0.95,
-        "relative half difference of viscous friction",
-    ),
+    ("a_F_c_pan", "1", -0.05581007913369427, -0.95, 0.95,
+     "relative half difference of Coulomb friction"),
+    ("a_F_s_pan", "1", -0.17362962962962966, -0.95, 0.95,
+     "relative half difference of static friction"),
+    ("a_v_s_pan", "1", -0.006249999999999962, -0.95, 0.95,
+     "relative half difference of Stribeck speed"),
+    ("a_F_v_pan", "1", -0.025677071379389464, -0.95, 0.95,
+     "relative half difference of viscous friction"),
     ("gap_pan", "rad", 0.02600540585471551, 0.0, 1.0, "whole gap between the two faces"),
     ("k_shaft_pan", "N m/rad", 5000.0, 0.001, 1000000000.0, "shaft stiffness"),
     ("d_shaft_pan", "N m s/rad", 1.0, 0.0, 1000000.0, "shaft damping"),
@@ -233,4513 +186,1626 @@ PARAMETERS = (
     ("s_max_tilt", "m", 0.1, 1e-06, 100.0, "longest stroke"),
     ("gravity", "m/s^2", 9.81, 0.0, 1000.0, "gravitational acceleration"),
 )
-# Searching them: name, value at which the effect vanishes (None: any), starts,
-# period, what a frequency is locked to.
-SEARCH = (
-    ("b_pan", 0.0, (0.1,), None, None),
-    ("b_tilt", 0.0, (0.1,), None, None),
-    ("F_c_pan", 0.0, (0.05,), None, None),
-    ("F_s_pan", 0.0, (0.05,), None, None),
-    ("v_s_pan", None, (0.05,), None, None),
-    ("F_v_pan", 0.0, (0.0,), None, None),
-    ("a_F_c_pan", 0.0, (-0.1, 0.1), None, None),
-    ("a_F_s_pan", 0.0, (0.0,), None, None),
-    ("a_v_s_pan", 0.0, (0.0,), None, None),
-    ("a_F_v_pan", 0.0, (0.0,), None, None),
-    ("gap_pan", 0.0, (0.005, 0.02), None, None),
-    ("k_shaft_pan", None, (100.0, 3000.0), None, None),
-    ("d_shaft_pan", None, (1.0,), None, None),
-)
-# Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of the
-# effects that it acts on, title, reference, separating experiment, first member leads.
-EFFECTS = (
-    (
-        "rigid_bodies",
-        None,
-        ("J_pan", "J_x_tilt", "J_y_tilt", "J_z_tilt"),
-        (),
-        (),
-        "pan body and tilt body",
-        "thesis Eq. 3.8, Table 5.1",
-        "",
-        False,
-    ),
-    (
-        "payload",
-        None,
-        (
-            "m_payload",
-            "J_x_payload",
-            "J_y_payload",
-            "J_z_payload",
-            "c_x_payload",
-            "c_y_payload",
-            "c_z_payload",
-        ),
-        (),
-        (),
-        "payload",
-        "thesis section 3.2.2, Table 5.3 with erratum 18",
-        "",
-        False,
-    ),
-    (
-        "viscous_friction",
-        "pan",
-        ("b_pan",),
-        (),
-        (),
-        "viscous friction in the joint",
-        "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
-        "Run at six or more steady speeds, the slowest near the Stribeck speed.",
-        False,
-    ),
-    (
-        "viscous_friction",
-        "tilt",
-        ("b_tilt",),
-        (),
-        (),
-        "viscous friction in the joint",
-        "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
-        "Run at six or more steady speeds, the slowest near the Stribeck speed.",
-        False,
-    ),
-    (
-        "csvs_friction",
-        "pan",
-        ("F_c_pan", "F_s_pan", "v_s_pan", "F_v_pan"),
-        (
-            ("Coulomb friction", ("F_c_pan",), (("F_s_pan", "F_c_pan"),)),
-            ("Coulomb and viscous friction", ("F_c_pan", "F_v_pan"), (("F_s_pan", "F_c_pan"),)),
-            ("Coulomb and static friction, Stribeck curve", ("F_c_pan", "F_s_pan", "v_s_pan"), ()),
-            (
-                "Coulomb, static, viscous and Stribeck friction",
-                ("F_c_pan", "F_s_pan", "v_s_pan", "F_v_pan"),
-                (),
-            ),
-        ),
-        (),
-        "Coulomb, static, viscous and Stribeck friction",
-        "thesis Eq. 2.10, 2.11 with errata 2 and 3, Eq. 4.1, exponent 2",
-        "Crawl through standstill in both directions at several slow speeds.",
-        False,
-    ),
-    (
-        "direction_dependent_friction",
-        "pan",
-        ("a_F_c_pan", "a_F_s_pan", "a_v_s_pan", "a_F_v_pan"),
-        (
-            ("Coulomb friction", ("a_F_c_pan",), ()),
-            ("viscous friction", ("a_F_v_pan",), ()),
-            ("Coulomb and static friction", ("a_F_c_pan", "a_F_s_pan"), ()),
-            ("Coulomb and viscous friction", ("a_F_c_pan", "a_F_v_pan"), ()),
-            ("Coulomb, static and viscous friction", ("a_F_c_pan", "a_F_s_pan", "a_F_v_pan"), ()),
-            (
-                "all of dry and viscous friction",
-                ("a_F_c_pan", "a_F_s_pan", "a_v_s_pan", "a_F_v_pan"),
-                (),
-            ),
-        ),
-        ("csvs_friction@pan",),
-        "friction that differs by direction",
-        "thesis Tables 4.1 and 4.2 (omega > 0, omega < 0)",
-        "Run the same speeds both ways at two supply polarities, or back-drive the joint "
-        "without power: friction follows the motion, an offset does not.",
-        False,
-    ),
-    (
-        "backlash",
-        "pan",
-        ("gap_pan",),
-        (),
-        ("shaft_compliance@pan",),
-        "backlash",
-        "thesis Eq. 2.16 (dead zone), Table 5.7; contact that cannot pull",
-        "Reverse slowly with and without a known preload torque on the joint: backlash "
-        "disappears under preload, presliding does not.",
-        False,
-    ),
-    (
-        "shaft_compliance",
-        "pan",
-        ("k_shaft_pan", "d_shaft_pan"),
-        (),
-        (),
-        "flexible shaft",
-        "thesis Eq. 2.15 with erratum 4, Table 5.7",
-        "Lock the motor and strike the joint, or excite with a 10 to 40 Hz chirp: a shaft"
-        " resonates, a delay only turns the phase, and a gap rings at no fixed frequency.",
-        False,
-    ),
-    (
-        "dc_motor",
-        "pan",
-        ("L_pan", "R_pan", "K_t_pan", "J_motor_pan", "N_pan"),
-        (),
-        (),
-        "geared DC motor",
-        "thesis Eq. 3.10, Eq. 3.11 with erratum 8",
-        "",
-        False,
-    ),
-    (
-        "linear_actuator",
-        "tilt",
-        (
-            "L_tilt",
-            "R_tilt",
-            "K_t_tilt",
-            "J_motor_tilt",
-            "b_motor_tilt",
-            "N_tilt",
-            "lead_tilt",
-            "d_screw_tilt",
-            "f_screw_tilt",
-            "l_ground_tilt",
-            "l_min_tilt",
-            "r_arm_tilt",
-            "s_start_tilt",
-            "s_max_tilt",
-        ),
-        (),
-        (),
-        "linear actuator with lead screw and linkage",
-        "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6",
-        "",
-        False,
-    ),
-)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def mode_derivative(t, x, u, p, m, dx):
-    """Write the time derivative of the state into dx in the modes m.
-
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
-    see MODE_NAMES; dx [8] in STATE_UNITS per s.
-    """
-    theta_pan = x[0]
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    theta_gear_pan = x[4]
-    omega_gear_pan = x[5]
-    i_pan = x[6]
-    i_tilt = x[7]
-    u_pan = u[0]
-    u_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    b_pan = p[11]
-    b_tilt = p[12]
-    F_c_pan = p[13]
-    F_s_pan = p[14]
-    v_s_pan = p[15]
-    F_v_pan = p[16]
-    a_F_c_pan = p[17]
-    a_F_s_pan = p[18]
-    a_v_s_pan = p[19]
-    a_F_v_pan = p[20]
-    gap_pan = p[21]
-    k_shaft_pan = p[22]
-    d_shaft_pan = p[23]
-    L_pan = p[24]
-    R_pan = p[25]
-    K_t_pan = p[26]
-    J_motor_pan = p[27]
-    N_pan = p[28]
-    L_tilt = p[29]
-    R_tilt = p[30]
-    K_t_tilt = p[31]
-    J_motor_tilt = p[32]
-    b_motor_tilt = p[33]
-    N_tilt = p[34]
-    lead_tilt = p[35]
-    d_screw_tilt = p[36]
-    f_screw_tilt = p[37]
-    l_ground_tilt = p[38]
-    l_min_tilt = p[39]
-    r_arm_tilt = p[40]
-    s_start_tilt = p[41]
-    gravity = p[43]
-    slide_pan = m[0]
-    slide_tilt = m[1]
-    side_pan = m[2]
-    active_pan = m[3]
-    dx[0] = omega_pan
-    dx[1] = omega_tilt
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def constants(p):
+    """Return what depends on the parameters alone."""
+    J_pan, J_x_tilt, J_y_tilt, J_z_tilt, m_payload, J_x_payload = p[0], p[1], p[2], p[3], p[4], p[5]
+    J_y_payload, J_z_payload, c_x_payload, c_y_payload, c_z_payload = p[6], p[7], p[8], p[9], p[10]
+    gap_pan, K_t_pan, J_motor_pan, N_pan, lead_tilt = p[21], p[26], p[27], p[28], p[35]
+    d_screw_tilt, f_screw_tilt, l_ground_tilt, l_min_tilt = p[36], p[37], p[38], p[39]
+    r_arm_tilt, s_start_tilt, gravity = p[40], p[41], p[43]
     inertia_pan_sin_cos_tilt = 2.0 * c_x_payload * c_z_payload * m_payload
-    inertia_pan_sin_sq_tilt_term = (c_x_payload * c_x_payload) * m_payload
-    inertia_pan_sin_sq_tilt_term_2 = (c_z_payload * c_z_payload) * m_payload
-    inertia_pan_sin_sq_tilt = (
-        J_x_payload
-        + J_x_tilt
-        - J_z_payload
-        - J_z_tilt
-        - inertia_pan_sin_sq_tilt_term
-        + inertia_pan_sin_sq_tilt_term_2
-    )
-    cos_tilt = math.cos(theta_tilt)
-    sin_tilt = math.sin(theta_tilt)
-    inertia_pan_per_sin_tilt = (
-        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
-    )
-    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
+    c_z_payload_sq_m_payload = (c_z_payload * c_z_payload) * m_payload
+    c_x_payload_sq_m_payload = (c_x_payload * c_x_payload) * m_payload
+    inertia_pan_sin_sq_tilt = (J_x_payload + J_x_tilt - J_z_payload - J_z_tilt
+        - c_x_payload_sq_m_payload + c_z_payload_sq_m_payload)
     c_y_payload_m_payload = c_y_payload * m_payload
     coupling_cos_tilt = c_y_payload_m_payload * c_z_payload
     coupling_sin_tilt = c_x_payload * c_y_payload_m_payload
-    shaft_torque_pan_term = omega_gear_pan - omega_pan
     half_gap_pan = 0.5 * gap_pan
-    shaft_torque_pan_term_2 = -half_gap_pan * side_pan + theta_gear_pan - theta_pan
-    shaft_torque_pan = active_pan * (
-        d_shaft_pan * shaft_torque_pan_term + k_shaft_pan * shaft_torque_pan_term_2
-    )
-    force_pan = (
-        -b_pan * omega_pan
-        - omega_tilt
-        * (coriolis + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt))
-        + shaft_torque_pan
-    )
-    inertia_tilt = (
-        J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term + inertia_pan_sin_sq_tilt_term_2
-    )
-    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
-    inertia_pan = (
-        J_pan
-        + J_z_payload
-        + J_z_tilt
-        + (c_y_payload * c_y_payload) * m_payload
-        + inertia_pan_sin_sq_tilt_term
-    )
-    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
-    mass_pan_inverse = 1.0 / mass_pan
-    load_inertia_tilt = inertia_tilt - mass_pan_inverse * (mass_pan_tilt * mass_pan_tilt)
-    lowered_tilt_term = math.pi * d_screw_tilt
+    inertia_tilt = J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
+    inertia_pan = (J_pan + J_z_payload + J_z_tilt + c_x_payload_sq_m_payload
+        + (c_y_payload * c_y_payload) * m_payload)
+    d_screw_tilt_pi = math.pi * d_screw_tilt
     f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
-    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
+    d_screw_tilt_pi_f_screw_tilt = d_screw_tilt_pi * f_screw_tilt
     lead_tilt_inverse = 1.0 / lead_tilt
-    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
-    lowered_tilt = (
-        -lead_tilt_inverse_lowered_tilt_term
-        * (f_screw_tilt_lowered_tilt_term - lead_tilt)
-        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
-    )
+    d_screw_tilt_pi_lead_tilt_inverse = d_screw_tilt_pi * lead_tilt_inverse
+    lowered_tilt = (-d_screw_tilt_pi_lead_tilt_inverse * (d_screw_tilt_pi_f_screw_tilt
+        - lead_tilt) / (d_screw_tilt_pi + f_screw_tilt_lead_tilt))
     l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
     r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
     l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
-    linkage_cos_tilt = l_ground_tilt_sq_plus_r_arm_tilt_sq - (
-        (l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)
-    )
-    linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
-    linkage_sin_tilt = math.sqrt(
-        4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt * linkage_cos_tilt)
-    )
-    cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
-    ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
-    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
-    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt = math.sqrt(
-        -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
-    )
-    ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
-    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
-    lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
-    lost_lowering_tilt = (1.0 - lowered_tilt) / (
-        abs(load_inertia_tilt * lowered_tilt + lost_lowering_tilt_term)
-    )
-    raised_tilt = (
-        lead_tilt_inverse_lowered_tilt_term
-        * (f_screw_tilt_lowered_tilt_term + lead_tilt)
-        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
-    )
-    lost_raising_tilt = (raised_tilt - 1.0) / (
-        load_inertia_tilt * raised_tilt + lost_lowering_tilt_term
-    )
-    length_tilt_by_theta_tilt = (
-        -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
-    ) / length_tilt
-    ratio_tilt_by_theta_tilt = (
-        -math.pi
-        * N_tilt
-        * lead_tilt_inverse
-        * length_tilt_by_theta_tilt
-        * ratio_tilt_term
-        / (length_tilt * length_tilt)
-        + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
-    )
-    driving_torque_tilt_term = (
-        J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt * ratio_tilt_by_theta_tilt
-    )
+    linkage_cos_tilt = (l_ground_tilt_sq_plus_r_arm_tilt_sq - ((l_min_tilt
+        + s_start_tilt) * (l_min_tilt + s_start_tilt)))
+    linkage_sin_tilt = (math.sqrt(4.0 * l_ground_tilt_sq * r_arm_tilt_sq
+        - (linkage_cos_tilt * linkage_cos_tilt)))
+    raised_tilt = (d_screw_tilt_pi_lead_tilt_inverse * (d_screw_tilt_pi_f_screw_tilt
+        + lead_tilt) / (d_screw_tilt_pi - f_screw_tilt_lead_tilt))
     gravity_m_payload = gravity * m_payload
     gravity_cos_tilt = c_x_payload * gravity_m_payload
     gravity_sin_tilt = c_z_payload * gravity_m_payload
-    load_torque_tilt_term = (
-        -b_tilt * omega_tilt
-        + 0.5 * coriolis * omega_pan
-        + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt
-    )
+    mass_gear_pan = J_motor_pan * (N_pan * N_pan)
+    inverse_mass_gear_pan = 1.0 / mass_gear_pan
+    K_t_pan_N_pan = K_t_pan * N_pan
+    raised_tilt_minus_lowered_tilt = -lowered_tilt + raised_tilt
+    return (inertia_pan_sin_cos_tilt, inertia_pan_sin_sq_tilt, coupling_cos_tilt, coupling_sin_tilt,
+        half_gap_pan, inertia_tilt, inertia_pan, lead_tilt_inverse, lowered_tilt,
+        l_ground_tilt_sq_plus_r_arm_tilt_sq, linkage_cos_tilt, linkage_sin_tilt, raised_tilt,
+        gravity_cos_tilt, gravity_sin_tilt, mass_gear_pan, inverse_mass_gear_pan, K_t_pan_N_pan,
+        raised_tilt_minus_lowered_tilt)
+
+
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def mass_and_forces(t, x, u, p, m, c):
+    """Return mass matrix, forces and what else the functions below have in common."""
+    theta_pan, theta_tilt, omega_pan, omega_tilt, theta_gear_pan = x[0], x[1], x[2], x[3], x[4]
+    omega_gear_pan, i_pan, i_tilt = x[5], x[6], x[7]
+    u_pan, u_tilt = u[0], u[1]
+    b_pan, b_tilt, F_c_pan, F_s_pan, v_s_pan, F_v_pan = p[11], p[12], p[13], p[14], p[15], p[16]
+    a_F_c_pan, a_F_s_pan, a_v_s_pan, a_F_v_pan, k_shaft_pan = p[17], p[18], p[19], p[20], p[22]
+    d_shaft_pan, L_pan, R_pan, K_t_pan, N_pan, L_tilt = p[23], p[24], p[25], p[26], p[28], p[29]
+    R_tilt, K_t_tilt, J_motor_tilt, b_motor_tilt, N_tilt = p[30], p[31], p[32], p[33], p[34]
+    slide_pan, slide_tilt, side_pan, active_pan = m[0], m[1], m[2], m[3]
+    inertia_pan_sin_cos_tilt, inertia_pan_sin_sq_tilt, coupling_cos_tilt = c[0], c[1], c[2]
+    coupling_sin_tilt, half_gap_pan, inertia_tilt, inertia_pan = c[3], c[4], c[5], c[6]
+    lead_tilt_inverse, lowered_tilt, l_ground_tilt_sq_plus_r_arm_tilt_sq = c[7], c[8], c[9]
+    linkage_cos_tilt, linkage_sin_tilt, raised_tilt, gravity_cos_tilt = c[10], c[11], c[12], c[13]
+    gravity_sin_tilt, K_t_pan_N_pan = c[14], c[17]
+    cos_tilt = math.cos(theta_tilt)
+    sin_tilt = math.sin(theta_tilt)
+    inertia_pan_per_sin_tilt = (cos_tilt * inertia_pan_sin_cos_tilt
+        + inertia_pan_sin_sq_tilt * sin_tilt)
+    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
+    omega_gear_pan_minus_omega_pan = omega_gear_pan - omega_pan
+    shaft_torque_pan_term = d_shaft_pan * omega_gear_pan_minus_omega_pan
+    theta_pan_minus_theta_gear_pan = -theta_gear_pan + theta_pan
+    shaft_torque_pan_term_2 = -half_gap_pan * side_pan - theta_pan_minus_theta_gear_pan
+    k_shaft_pan_shaft_torque_pan_term_2 = k_shaft_pan * shaft_torque_pan_term_2
+    shaft_torque_pan = active_pan * (k_shaft_pan_shaft_torque_pan_term_2 + shaft_torque_pan_term)
+    force_pan = (-b_pan * omega_pan - omega_tilt * (coriolis
+        + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt))
+        + shaft_torque_pan)
+    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
+    mass_pan_inverse = 1.0 / mass_pan
+    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
+    mass_pan_tilt_sq = mass_pan_tilt * mass_pan_tilt
+    load_inertia_tilt = inertia_tilt - mass_pan_inverse * mass_pan_tilt_sq
+    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
+    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
+    length_tilt = (math.sqrt(-cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq
+        - linkage_sin_tilt_sin_tilt))
+    ratio_tilt_term = math.pi * N_tilt * lead_tilt_inverse / length_tilt
+    ratio_tilt_term_2 = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
+    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
+    ratio_tilt_sq = ratio_tilt * ratio_tilt
+    J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
+    lost_lowering_tilt = ((1.0 - lowered_tilt) / abs(J_motor_tilt_ratio_tilt_sq
+        + load_inertia_tilt * lowered_tilt))
+    lost_raising_tilt = ((raised_tilt - 1.0) / (J_motor_tilt_ratio_tilt_sq
+        + load_inertia_tilt * raised_tilt))
+    length_tilt_by_theta_tilt = 0.5 * ratio_tilt_term_2 / length_tilt
+    ratio_tilt_by_theta_tilt = (-math.pi * N_tilt * lead_tilt_inverse * length_tilt_by_theta_tilt
+        * ratio_tilt_term_2 / (length_tilt * length_tilt) + ratio_tilt_term
+        * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt))
+    omega_tilt_sq = omega_tilt * omega_tilt
+    driving_torque_tilt_term = J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
     omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
     driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
     driving_torque_tilt = -driving_torque_tilt_term + driving_torque_tilt_term_2 * ratio_tilt
-    load_torque_tilt = -force_pan * mass_pan_inverse * mass_pan_tilt + load_torque_tilt_term
-    carried_tilt = (
-        driving_torque_tilt * load_inertia_tilt - load_torque_tilt * lost_lowering_tilt_term
-    )
+    force_pan_mass_pan_tilt = force_pan * mass_pan_tilt
+    load_torque_tilt_term = (-b_tilt * omega_tilt + 0.5 * coriolis * omega_pan
+        + cos_tilt * gravity_cos_tilt + gravity_sin_tilt * sin_tilt)
+    load_torque_tilt = -force_pan_mass_pan_tilt * mass_pan_inverse + load_torque_tilt_term
+    carried_tilt = (-J_motor_tilt_ratio_tilt_sq * load_torque_tilt
+        + driving_torque_tilt * load_inertia_tilt)
     carried_tilt_slide_tilt = carried_tilt * slide_tilt
+    force_tilt_term = (slide_tilt * (0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt
+        + lost_raising_tilt) + 0.5 * (lost_lowering_tilt
+        + lost_raising_tilt) * abs(carried_tilt_slide_tilt)))
     transmitted_torque_tilt = driving_torque_tilt_term_2 * ratio_tilt
-    force_tilt = (
-        -driving_torque_tilt_term
-        + load_torque_tilt_term
-        - slide_tilt
-        * (
-            0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
-            + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
-        )
-        + transmitted_torque_tilt
-    )
-    mass_tilt = inertia_tilt + lost_lowering_tilt_term
-    slide_tilt_sq = slide_tilt * slide_tilt
-    inverse_determinant = 1.0 / (
-        mass_pan * mass_tilt - (mass_pan_tilt * mass_pan_tilt) * slide_tilt_sq
-    )
-    mass_pan_tilt_slide_tilt_sq = mass_pan_tilt * slide_tilt_sq
-    accel_pan = inverse_determinant * (
-        force_pan * mass_tilt - force_tilt * mass_pan_tilt_slide_tilt_sq
-    )
-    dx[2] = accel_pan
-    accel_tilt = (
-        inverse_determinant
-        * slide_tilt_sq
-        * (-force_pan * mass_pan_tilt_slide_tilt_sq + force_tilt * mass_pan)
-    )
-    dx[3] = accel_tilt
-    dx[4] = omega_gear_pan
+    force_tilt_term_2 = -driving_torque_tilt_term + load_torque_tilt_term + transmitted_torque_tilt
+    force_tilt = -force_tilt_term + force_tilt_term_2
+    mass_tilt = J_motor_tilt_ratio_tilt_sq + inertia_tilt
     coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
-    force_gear_pan_term = a_F_s_pan * slide_pan + 1.0
-    stribeck_square_pan_term = a_v_s_pan * slide_pan + 1.0
-    stribeck_square_pan = (omega_gear_pan * omega_gear_pan) / (
-        (stribeck_square_pan_term * stribeck_square_pan_term) * (v_s_pan * v_s_pan)
-    )
+    omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
+    stribeck_square_pan = (omega_gear_pan_sq / ((v_s_pan * v_s_pan) * ((a_v_s_pan * slide_pan
+        + 1.0) * (a_v_s_pan * slide_pan + 1.0))))
     viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
-    force_gear_pan = (
-        K_t_pan * N_pan * i_pan
-        - shaft_torque_pan
-        - slide_pan
-        * (
-            coulomb_torque_pan
-            + omega_gear_pan * slide_pan * viscous_coefficient_pan
-            + (F_s_pan * force_gear_pan_term - coulomb_torque_pan) * math.exp(-stribeck_square_pan)
-        )
-    )
-    mass_gear_pan = J_motor_pan * (N_pan * N_pan)
-    inverse_mass_gear_pan = 1.0 / mass_gear_pan
-    accel_gear_pan = force_gear_pan * inverse_mass_gear_pan * (slide_pan * slide_pan)
-    dx[5] = accel_gear_pan
-    dx[6] = (-K_t_pan * N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
-    dx[7] = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
+    force_gear_pan_term = (slide_pan * (coulomb_torque_pan
+        + omega_gear_pan * slide_pan * viscous_coefficient_pan + (F_s_pan * (a_F_s_pan * slide_pan
+        + 1.0) - coulomb_torque_pan) * math.exp(-stribeck_square_pan)))
+    force_gear_pan = K_t_pan * N_pan * i_pan - force_gear_pan_term - shaft_torque_pan
+    rate_of_i_pan = (-K_t_pan_N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
+    rate_of_i_tilt = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
+    return (cos_tilt, sin_tilt, omega_gear_pan_minus_omega_pan, shaft_torque_pan_term,
+        theta_pan_minus_theta_gear_pan, shaft_torque_pan_term_2,
+        k_shaft_pan_shaft_torque_pan_term_2, shaft_torque_pan, force_pan, mass_pan, mass_pan_tilt,
+        mass_pan_tilt_sq, ratio_tilt_sq, omega_tilt_sq, force_pan_mass_pan_tilt, load_torque_tilt,
+        force_tilt_term, force_tilt_term_2, force_tilt, mass_tilt, omega_gear_pan_sq,
+        force_gear_pan_term, force_gear_pan, rate_of_i_pan, rate_of_i_tilt)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def prepare(p, c):
     """Write into c what prepared_derivative takes from the parameters alone.
 
-    p [44] in the units of PARAMETERS; c [16] of prepare.
+    p [44] in the units of PARAMETERS; c [19] of prepare.
+    c: inertia_pan_sin_cos_tilt, inertia_pan_sin_sq_tilt, coupling_cos_tilt, coupling_sin_tilt,
+      half_gap_pan, inertia_tilt, inertia_pan, lead_tilt_inverse, lowered_tilt,
+      l_ground_tilt_sq_plus_r_arm_tilt_sq, linkage_cos_tilt, linkage_sin_tilt, raised_tilt,
+      gravity_cos_tilt, gravity_sin_tilt, mass_gear_pan, inverse_mass_gear_pan, K_t_pan_N_pan,
+      raised_tilt_minus_lowered_tilt.
     """
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    gap_pan = p[21]
-    J_motor_pan = p[27]
-    N_pan = p[28]
-    lead_tilt = p[35]
-    d_screw_tilt = p[36]
-    f_screw_tilt = p[37]
-    l_ground_tilt = p[38]
-    l_min_tilt = p[39]
-    r_arm_tilt = p[40]
-    s_start_tilt = p[41]
-    gravity = p[43]
-    c[0] = 2.0 * c_x_payload * c_z_payload * m_payload
-    inertia_pan_sin_sq_tilt_term = (c_x_payload * c_x_payload) * m_payload
-    inertia_pan_sin_sq_tilt_term_2 = (c_z_payload * c_z_payload) * m_payload
-    c[1] = (
-        J_x_payload
-        + J_x_tilt
-        - J_z_payload
-        - J_z_tilt
-        - inertia_pan_sin_sq_tilt_term
-        + inertia_pan_sin_sq_tilt_term_2
-    )
-    c_y_payload_m_payload = c_y_payload * m_payload
-    c[2] = c_y_payload_m_payload * c_z_payload
-    c[3] = c_x_payload * c_y_payload_m_payload
-    c[4] = 0.5 * gap_pan
-    c[5] = J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term + inertia_pan_sin_sq_tilt_term_2
-    c[6] = (
-        J_pan
-        + J_z_payload
-        + J_z_tilt
-        + (c_y_payload * c_y_payload) * m_payload
-        + inertia_pan_sin_sq_tilt_term
-    )
-    lowered_tilt_term = math.pi * d_screw_tilt
-    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
-    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
-    lead_tilt_inverse = 1.0 / lead_tilt
-    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
-    c[8] = (
-        -lead_tilt_inverse_lowered_tilt_term
-        * (f_screw_tilt_lowered_tilt_term - lead_tilt)
-        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
-    )
-    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
-    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
-    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
-    linkage_cos_tilt = l_ground_tilt_sq_plus_r_arm_tilt_sq - (
-        (l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)
-    )
-    c[11] = math.sqrt(
-        4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt * linkage_cos_tilt)
-    )
-    c[12] = (
-        lead_tilt_inverse_lowered_tilt_term
-        * (f_screw_tilt_lowered_tilt_term + lead_tilt)
-        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
-    )
-    gravity_m_payload = gravity * m_payload
-    c[13] = c_x_payload * gravity_m_payload
-    c[14] = c_z_payload * gravity_m_payload
-    mass_gear_pan = J_motor_pan * (N_pan * N_pan)
-    c[15] = 1.0 / mass_gear_pan
-    c[7] = lead_tilt_inverse
-    c[9] = l_ground_tilt_sq_plus_r_arm_tilt_sq
-    c[10] = linkage_cos_tilt
+    values = constants(p)
+    for k in range(PREPARED):
+        c[k] = values[k]
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def prepared_derivative(t, x, u, p, m, c, dx):
     """Write the time derivative of the state into dx in the modes m, c being prepared.
 
     t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
-    see MODE_NAMES; c [16] of prepare; dx [8] in STATE_UNITS per s.
+      see MODE_NAMES; c [19] of prepare; dx [8] in STATE_UNITS per s.
+    dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt, rate_of_theta_gear_pan,
+      accel_gear_pan, rate_of_i_pan, rate_of_i_tilt.
     """
-    theta_pan = x[0]
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    theta_gear_pan = x[4]
-    omega_gear_pan = x[5]
-    i_pan = x[6]
-    i_tilt = x[7]
-    u_pan = u[0]
-    u_tilt = u[1]
-    b_pan = p[11]
-    b_tilt = p[12]
-    F_c_pan = p[13]
-    F_s_pan = p[14]
-    v_s_pan = p[15]
-    F_v_pan = p[16]
-    a_F_c_pan = p[17]
-    a_F_s_pan = p[18]
-    a_v_s_pan = p[19]
-    a_F_v_pan = p[20]
-    k_shaft_pan = p[22]
-    d_shaft_pan = p[23]
-    L_pan = p[24]
-    R_pan = p[25]
-    K_t_pan = p[26]
-    N_pan = p[28]
-    L_tilt = p[29]
-    R_tilt = p[30]
-    K_t_tilt = p[31]
-    J_motor_tilt = p[32]
-    b_motor_tilt = p[33]
-    N_tilt = p[34]
-    slide_pan = m[0]
-    slide_tilt = m[1]
-    side_pan = m[2]
-    active_pan = m[3]
-    inertia_pan_sin_cos_tilt = c[0]
-    inertia_pan_sin_sq_tilt = c[1]
-    coupling_cos_tilt = c[2]
-    coupling_sin_tilt = c[3]
-    half_gap_pan = c[4]
-    inertia_tilt = c[5]
-    inertia_pan = c[6]
-    lead_tilt_inverse = c[7]
-    lowered_tilt = c[8]
-    l_ground_tilt_sq_plus_r_arm_tilt_sq = c[9]
-    linkage_cos_tilt = c[10]
-    linkage_sin_tilt = c[11]
-    raised_tilt = c[12]
-    gravity_cos_tilt = c[13]
-    gravity_sin_tilt = c[14]
-    inverse_mass_gear_pan = c[15]
-    dx[0] = omega_pan
-    dx[1] = omega_tilt
-    cos_tilt = math.cos(theta_tilt)
-    sin_tilt = math.sin(theta_tilt)
-    inertia_pan_per_sin_tilt = (
-        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
-    )
-    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
-    shaft_torque_pan_term = omega_gear_pan - omega_pan
-    shaft_torque_pan_term_2 = -half_gap_pan * side_pan + theta_gear_pan - theta_pan
-    shaft_torque_pan = active_pan * (
-        d_shaft_pan * shaft_torque_pan_term + k_shaft_pan * shaft_torque_pan_term_2
-    )
-    force_pan = (
-        -b_pan * omega_pan
-        - omega_tilt
-        * (coriolis + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt))
-        + shaft_torque_pan
-    )
-    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
-    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
-    mass_pan_inverse = 1.0 / mass_pan
-    load_inertia_tilt = inertia_tilt - mass_pan_inverse * (mass_pan_tilt * mass_pan_tilt)
-    linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
-    cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
-    ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
-    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
-    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt = math.sqrt(
-        -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
-    )
-    ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
-    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
-    lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
-    lost_lowering_tilt = (1.0 - lowered_tilt) / (
-        abs(load_inertia_tilt * lowered_tilt + lost_lowering_tilt_term)
-    )
-    lost_raising_tilt = (raised_tilt - 1.0) / (
-        load_inertia_tilt * raised_tilt + lost_lowering_tilt_term
-    )
-    length_tilt_by_theta_tilt = (
-        -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
-    ) / length_tilt
-    ratio_tilt_by_theta_tilt = (
-        -math.pi
-        * N_tilt
-        * lead_tilt_inverse
-        * length_tilt_by_theta_tilt
-        * ratio_tilt_term
-        / (length_tilt * length_tilt)
-        + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
-    )
-    driving_torque_tilt_term = (
-        J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt * ratio_tilt_by_theta_tilt
-    )
-    load_torque_tilt_term = (
-        -b_tilt * omega_tilt
-        + 0.5 * coriolis * omega_pan
-        + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt
-    )
-    omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
-    driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
-    driving_torque_tilt = -driving_torque_tilt_term + driving_torque_tilt_term_2 * ratio_tilt
-    load_torque_tilt = -force_pan * mass_pan_inverse * mass_pan_tilt + load_torque_tilt_term
-    carried_tilt = (
-        driving_torque_tilt * load_inertia_tilt - load_torque_tilt * lost_lowering_tilt_term
-    )
-    carried_tilt_slide_tilt = carried_tilt * slide_tilt
-    transmitted_torque_tilt = driving_torque_tilt_term_2 * ratio_tilt
-    force_tilt = (
-        -driving_torque_tilt_term
-        + load_torque_tilt_term
-        - slide_tilt
-        * (
-            0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
-            + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
-        )
-        + transmitted_torque_tilt
-    )
-    mass_tilt = inertia_tilt + lost_lowering_tilt_term
+    forces = mass_and_forces(t, x, u, p, m, c)
+    force_pan, mass_pan, mass_pan_tilt = forces[8], forces[9], forces[10]
+    mass_pan_tilt_sq, force_pan_mass_pan_tilt, force_tilt = forces[11], forces[14], forces[18]
+    mass_tilt, force_gear_pan, rate_of_i_pan = forces[19], forces[22], forces[23]
+    rate_of_i_tilt = forces[24]
+    omega_pan, omega_tilt, omega_gear_pan = x[2], x[3], x[5]
+    slide_pan, slide_tilt = m[0], m[1]
+    inverse_mass_gear_pan = c[16]
+    dx[0] = omega_pan  # rate_of_theta_pan
+    dx[1] = omega_tilt  # rate_of_theta_tilt
     slide_tilt_sq = slide_tilt * slide_tilt
-    inverse_determinant = 1.0 / (
-        mass_pan * mass_tilt - (mass_pan_tilt * mass_pan_tilt) * slide_tilt_sq
-    )
-    mass_pan_tilt_slide_tilt_sq = mass_pan_tilt * slide_tilt_sq
-    accel_pan = inverse_determinant * (
-        force_pan * mass_tilt - force_tilt * mass_pan_tilt_slide_tilt_sq
-    )
+    inverse_determinant = 1.0 / (mass_pan * mass_tilt - mass_pan_tilt_sq * slide_tilt_sq)
+    accel_pan = (inverse_determinant * (force_pan * mass_tilt
+        - force_tilt * mass_pan_tilt * slide_tilt_sq))
     dx[2] = accel_pan
-    accel_tilt = (
-        inverse_determinant
-        * slide_tilt_sq
-        * (-force_pan * mass_pan_tilt_slide_tilt_sq + force_tilt * mass_pan)
-    )
-    dx[3] = accel_tilt
-    dx[4] = omega_gear_pan
-    coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
-    force_gear_pan_term = a_F_s_pan * slide_pan + 1.0
-    stribeck_square_pan_term = a_v_s_pan * slide_pan + 1.0
-    stribeck_square_pan = (omega_gear_pan * omega_gear_pan) / (
-        (stribeck_square_pan_term * stribeck_square_pan_term) * (v_s_pan * v_s_pan)
-    )
-    viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
-    force_gear_pan = (
-        K_t_pan * N_pan * i_pan
-        - shaft_torque_pan
-        - slide_pan
-        * (
-            coulomb_torque_pan
-            + omega_gear_pan * slide_pan * viscous_coefficient_pan
-            + (F_s_pan * force_gear_pan_term - coulomb_torque_pan) * math.exp(-stribeck_square_pan)
-        )
-    )
-    accel_gear_pan = force_gear_pan * inverse_mass_gear_pan * (slide_pan * slide_pan)
-    dx[5] = accel_gear_pan
-    dx[6] = (-K_t_pan * N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
-    dx[7] = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
+    dx[3] = (inverse_determinant * slide_tilt_sq * (-force_pan_mass_pan_tilt * slide_tilt_sq
+        + force_tilt * mass_pan))  # accel_tilt
+    dx[4] = omega_gear_pan  # rate_of_theta_gear_pan
+    dx[5] = force_gear_pan * inverse_mass_gear_pan * (slide_pan * slide_pan)  # accel_gear_pan
+    dx[6] = rate_of_i_pan
+    dx[7] = rate_of_i_tilt
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def jacobian(t, x, u, p, m, fx, fu, fp):
-    """Write the non-zero derivatives of mode_derivative by state, input and parameter.
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def mode_derivative(t, x, u, p, m, dx):
+    """Write the time derivative of the state into dx in the modes m.
 
     t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
-    see MODE_NAMES; fx [8, 8]; fu [8, 2]; fp [8, 44].
+      see MODE_NAMES; dx [8] in STATE_UNITS per s.
+    dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt, rate_of_theta_gear_pan,
+      accel_gear_pan, rate_of_i_pan, rate_of_i_tilt.
     """
-    theta_pan = x[0]
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    theta_gear_pan = x[4]
-    omega_gear_pan = x[5]
-    i_pan = x[6]
-    i_tilt = x[7]
-    u_pan = u[0]
-    u_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    b_pan = p[11]
-    b_tilt = p[12]
-    F_c_pan = p[13]
-    F_s_pan = p[14]
-    v_s_pan = p[15]
-    F_v_pan = p[16]
-    a_F_c_pan = p[17]
-    a_F_s_pan = p[18]
-    a_v_s_pan = p[19]
-    a_F_v_pan = p[20]
-    gap_pan = p[21]
-    k_shaft_pan = p[22]
-    d_shaft_pan = p[23]
-    L_pan = p[24]
-    R_pan = p[25]
-    K_t_pan = p[26]
-    J_motor_pan = p[27]
-    N_pan = p[28]
-    L_tilt = p[29]
-    R_tilt = p[30]
-    K_t_tilt = p[31]
-    J_motor_tilt = p[32]
-    b_motor_tilt = p[33]
-    N_tilt = p[34]
-    lead_tilt = p[35]
-    d_screw_tilt = p[36]
-    f_screw_tilt = p[37]
-    l_ground_tilt = p[38]
-    l_min_tilt = p[39]
-    r_arm_tilt = p[40]
-    s_start_tilt = p[41]
-    gravity = p[43]
-    slide_pan = m[0]
-    slide_tilt = m[1]
-    side_pan = m[2]
-    active_pan = m[3]
-    follower_torque_tilt_by_theta_gear_pan = active_pan * k_shaft_pan
-    follower_torque_tilt_by_theta_pan = -follower_torque_tilt_by_theta_gear_pan
-    coupling_cos_tilt_by_c_z_payload = c_y_payload * m_payload
-    coupling_cos_tilt = c_z_payload * coupling_cos_tilt_by_c_z_payload
-    coupling_sin_tilt_by_m_payload = c_x_payload * c_y_payload
-    coupling_sin_tilt = coupling_sin_tilt_by_m_payload * m_payload
-    cos_tilt = math.cos(theta_tilt)
-    sin_tilt = math.sin(theta_tilt)
-    mass_pan_tilt_term = cos_tilt * coupling_cos_tilt - coupling_sin_tilt * sin_tilt
-    mass_pan_tilt = -mass_pan_tilt_term
-    c_x_payload_sq = c_x_payload * c_x_payload
-    c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
-    c_y_payload_sq = c_y_payload * c_y_payload
-    inertia_pan = (
-        J_pan + J_z_payload + J_z_tilt + c_x_payload_sq_m_payload + c_y_payload_sq * m_payload
-    )
-    gravity_cos_tilt_by_gravity = c_x_payload * m_payload
-    inertia_tilt_by_c_x_payload = 2.0 * gravity_cos_tilt_by_gravity
-    inertia_pan_sin_cos_tilt = c_z_payload * inertia_tilt_by_c_x_payload
-    c_z_payload_sq = c_z_payload * c_z_payload
-    c_z_payload_sq_m_payload = c_z_payload_sq * m_payload
-    inertia_pan_sin_sq_tilt = (
-        J_x_payload
-        + J_x_tilt
-        - J_z_payload
-        - J_z_tilt
-        - c_x_payload_sq_m_payload
-        + c_z_payload_sq_m_payload
-    )
-    inertia_pan_per_sin_tilt = (
-        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
-    )
-    inertia_pan_per_sin_tilt_sin_tilt = inertia_pan_per_sin_tilt * sin_tilt
-    mass_pan = inertia_pan + inertia_pan_per_sin_tilt_sin_tilt
-    mass_pan_inverse = 1.0 / mass_pan
-    mass_pan_inverse_mass_pan_tilt = mass_pan_inverse * mass_pan_tilt
-    load_torque_tilt_by_theta_pan = (
-        -follower_torque_tilt_by_theta_pan * mass_pan_inverse_mass_pan_tilt
-    )
-    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
-    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
-    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
-    linkage_cos_tilt = l_ground_tilt_sq_plus_r_arm_tilt_sq - (
-        (l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)
-    )
-    linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
-    linkage_sin_tilt_term = 4.0 * r_arm_tilt_sq
-    linkage_sin_tilt = math.sqrt(
-        l_ground_tilt_sq * linkage_sin_tilt_term - (linkage_cos_tilt * linkage_cos_tilt)
-    )
-    cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
-    ratio_tilt_by_N_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
-    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
-    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt_term = (
-        -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
-    )
-    length_tilt = math.sqrt(length_tilt_term)
-    length_tilt_inverse = 1.0 / length_tilt
-    lead_tilt_inverse = 1.0 / lead_tilt
-    ratio_tilt_by_N_tilt_term_2 = math.pi * lead_tilt_inverse
-    ratio_tilt_by_N_tilt_term_3 = length_tilt_inverse * ratio_tilt_by_N_tilt_term_2
-    ratio_tilt_by_N_tilt = ratio_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt_term_3
-    ratio_tilt = N_tilt * ratio_tilt_by_N_tilt
-    ratio_tilt_sq = ratio_tilt * ratio_tilt
-    J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
-    carried_tilt_by_theta_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_pan
-    inertia_tilt = J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
-    mass_tilt = J_motor_tilt_ratio_tilt_sq + inertia_tilt
-    slide_tilt_sq = slide_tilt * slide_tilt
-    inverse_determinant = 1.0 / (
-        mass_pan * mass_tilt - (mass_pan_tilt * mass_pan_tilt) * slide_tilt_sq
-    )
-    accel_pan_by_theta_pan_term = follower_torque_tilt_by_theta_gear_pan * mass_tilt
-    lowered_tilt_term = math.pi * d_screw_tilt
-    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
-    lowered_tilt_term_2 = f_screw_tilt_lowered_tilt_term - lead_tilt
-    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
-    lowered_tilt_term_3 = f_screw_tilt_lead_tilt + lowered_tilt_term
-    lowered_tilt_term_3_inverse = 1.0 / lowered_tilt_term_3
-    lowered_tilt_term_4 = lead_tilt_inverse * lowered_tilt_term_3_inverse
-    lowered_tilt_term_lowered_tilt_term_4 = lowered_tilt_term * lowered_tilt_term_4
-    lowered_tilt = -lowered_tilt_term_2 * lowered_tilt_term_lowered_tilt_term_4
-    lost_lowering_tilt_term = 1.0 - lowered_tilt
-    mass_pan_tilt_sq = mass_pan_tilt * mass_pan_tilt
-    load_inertia_tilt = inertia_tilt - mass_pan_inverse * mass_pan_tilt_sq
-    lost_lowering_tilt_term_2 = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt
-    lost_lowering_tilt_term_3 = 1.0 / (abs(lost_lowering_tilt_term_2))
-    lost_lowering_tilt = lost_lowering_tilt_term * lost_lowering_tilt_term_3
-    raised_tilt_term = f_screw_tilt_lowered_tilt_term + lead_tilt
-    raised_tilt_term_2 = -f_screw_tilt_lead_tilt + lowered_tilt_term
-    raised_tilt_term_2_inverse = 1.0 / raised_tilt_term_2
-    raised_tilt_term_3 = lead_tilt_inverse * raised_tilt_term_2_inverse
-    lowered_tilt_term_raised_tilt_term_3 = lowered_tilt_term * raised_tilt_term_3
-    raised_tilt = lowered_tilt_term_raised_tilt_term_3 * raised_tilt_term
-    lost_raising_tilt_term = raised_tilt - 1.0
-    lost_raising_tilt_term_2 = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * raised_tilt
-    lost_raising_tilt_term_2_inverse = 1.0 / lost_raising_tilt_term_2
-    lost_raising_tilt = lost_raising_tilt_term * lost_raising_tilt_term_2_inverse
-    accel_pan_by_theta_pan_term_2 = lost_lowering_tilt + lost_raising_tilt
-    ratio_tilt_by_theta_tilt_term = cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt
-    ratio_tilt_by_theta_tilt_term_2 = ratio_tilt_by_N_tilt_term_3 * ratio_tilt_by_theta_tilt_term
-    N_tilt_ratio_tilt_by_N_tilt_term = N_tilt * ratio_tilt_by_N_tilt_term
-    length_tilt_by_theta_tilt_term = (
-        -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
-    )
-    length_tilt_inverse_2 = 1.0 / length_tilt
-    length_tilt_by_theta_tilt = length_tilt_by_theta_tilt_term * length_tilt_inverse_2
-    ratio_tilt_by_theta_tilt_term_3 = 1.0 / (length_tilt * length_tilt)
-    ratio_tilt_by_theta_tilt_term_4 = ratio_tilt_by_N_tilt_term_2 * ratio_tilt_by_theta_tilt_term_3
-    ratio_tilt_by_theta_tilt_term_5 = length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_term_4
-    ratio_tilt_by_theta_tilt = (
-        N_tilt * ratio_tilt_by_theta_tilt_term_2
-        - N_tilt_ratio_tilt_by_N_tilt_term * ratio_tilt_by_theta_tilt_term_5
-    )
-    omega_tilt_sq = omega_tilt * omega_tilt
-    omega_tilt_sq_ratio_tilt_by_theta_tilt = omega_tilt_sq * ratio_tilt_by_theta_tilt
-    driving_torque_tilt_term = J_motor_tilt * omega_tilt_sq_ratio_tilt_by_theta_tilt
-    driving_torque_tilt_term_ratio_tilt = driving_torque_tilt_term * ratio_tilt
-    omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
-    b_motor_tilt_omega_tilt_ratio_tilt = b_motor_tilt * omega_tilt_ratio_tilt
-    driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt_omega_tilt_ratio_tilt
-    driving_torque_tilt = (
-        driving_torque_tilt_term_2 * ratio_tilt - driving_torque_tilt_term_ratio_tilt
-    )
-    cos_tilt_inertia_pan_per_sin_tilt = cos_tilt * inertia_pan_per_sin_tilt
-    coriolis_by_omega_pan = 2.0 * cos_tilt_inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt
-    coriolis = coriolis_by_omega_pan * omega_pan
-    follower_torque_tilt_by_b_pan = -omega_pan
-    shaft_torque_pan_term = follower_torque_tilt_by_b_pan + omega_gear_pan
-    half_gap_pan = 0.5 * gap_pan
-    shaft_torque_pan_term_2 = -half_gap_pan * side_pan + theta_gear_pan - theta_pan
-    shaft_torque_pan = active_pan * (
-        d_shaft_pan * shaft_torque_pan_term + k_shaft_pan * shaft_torque_pan_term_2
-    )
-    follower_coupling_tilt_by_theta_tilt = (
-        cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt
-    )
-    force_pan_term = follower_coupling_tilt_by_theta_tilt * omega_tilt
-    force_pan = -b_pan * omega_pan - omega_tilt * (coriolis + force_pan_term) + shaft_torque_pan
-    gravity_cos_tilt = gravity * gravity_cos_tilt_by_gravity
-    gravity_sin_tilt_by_gravity = c_z_payload * m_payload
-    gravity_sin_tilt = gravity * gravity_sin_tilt_by_gravity
-    half_coriolis = 0.5 * coriolis
-    load_torque_tilt_term = (
-        -b_tilt * omega_tilt
-        + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt
-        + half_coriolis * omega_pan
-    )
-    load_torque_tilt = -force_pan * mass_pan_inverse_mass_pan_tilt + load_torque_tilt_term
-    carried_tilt = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt + driving_torque_tilt * load_inertia_tilt
-    )
-    carried_tilt_slide_tilt = carried_tilt * slide_tilt
-    accel_pan_by_theta_pan_term_3 = -0.5 * lost_lowering_tilt + 0.5 * lost_raising_tilt
-    accel_pan_by_theta_pan_term_4 = (
-        0.5
-        * accel_pan_by_theta_pan_term_2
-        * slide_tilt
-        * (0.0 if carried_tilt_slide_tilt == 0 else math.copysign(1, carried_tilt_slide_tilt))
-        + accel_pan_by_theta_pan_term_3 * slide_tilt
-    )
-    fx[2, 0] = inverse_determinant * (
-        -accel_pan_by_theta_pan_term
-        + accel_pan_by_theta_pan_term_4 * carried_tilt_by_theta_pan * mass_pan_tilt * slide_tilt
-    )
-    inverse_determinant_slide_tilt_sq = inverse_determinant * slide_tilt_sq
-    mass_pan_tilt_slide_tilt_sq = mass_pan_tilt * slide_tilt_sq
-    accel_tilt_by_theta_pan_term = (
-        follower_torque_tilt_by_theta_gear_pan * mass_pan_tilt_slide_tilt_sq
-    )
-    accel_pan_by_theta_pan_term_4_slide_tilt = accel_pan_by_theta_pan_term_4 * slide_tilt
-    fx[3, 0] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_theta_pan * mass_pan
-        + accel_tilt_by_theta_pan_term
-    )
-    N_pan_sq = N_pan * N_pan
-    mass_gear_pan = J_motor_pan * N_pan_sq
-    inverse_mass_gear_pan = 1.0 / mass_gear_pan
-    accel_gear_pan_by_theta_pan_term = inverse_mass_gear_pan * (slide_pan * slide_pan)
-    accel_gear_pan_by_theta_pan_term_2 = (
-        accel_gear_pan_by_theta_pan_term * follower_torque_tilt_by_theta_gear_pan
-    )
-    fx[5, 0] = accel_gear_pan_by_theta_pan_term_2
-    force_tilt_term = abs(carried_tilt_slide_tilt)
-    half_force_tilt_term = 0.5 * force_tilt_term
-    transmitted_torque_tilt = driving_torque_tilt_term_2 * ratio_tilt
-    force_tilt = (
-        -driving_torque_tilt_term_ratio_tilt
-        + load_torque_tilt_term
-        - slide_tilt
-        * (
-            accel_pan_by_theta_pan_term_2 * half_force_tilt_term
-            + accel_pan_by_theta_pan_term_3 * carried_tilt_slide_tilt
-        )
-        + transmitted_torque_tilt
-    )
-    accel_pan = inverse_determinant * (
-        force_pan * mass_tilt - force_tilt * mass_pan_tilt_slide_tilt_sq
-    )
-    accel_tilt = inverse_determinant_slide_tilt_sq * (
-        -force_pan * mass_pan_tilt_slide_tilt_sq + force_tilt * mass_pan
-    )
-    inertia_pan_per_sin_tilt_by_theta_tilt = (
-        cos_tilt * inertia_pan_sin_sq_tilt - inertia_pan_sin_cos_tilt * sin_tilt
-    )
-    follower_inertia_tilt_by_theta_tilt = (
-        cos_tilt_inertia_pan_per_sin_tilt + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt
-    )
-    twice_omega_pan = 2.0 * omega_pan
-    coriolis_by_theta_tilt = (
-        2.0 * cos_tilt * inertia_pan_per_sin_tilt_by_theta_tilt * omega_pan
-        - inertia_pan_per_sin_tilt_sin_tilt * twice_omega_pan
-    )
-    accel_pan_by_theta_tilt_term = (
-        coriolis_by_theta_tilt * omega_tilt + mass_pan_tilt_term * omega_tilt_sq
-    )
-    accel_pan_by_theta_tilt_term_2 = (
-        -accel_pan * follower_inertia_tilt_by_theta_tilt
-        - accel_pan_by_theta_tilt_term
-        - accel_tilt * follower_coupling_tilt_by_theta_tilt
-    )
-    length_tilt_by_theta_tilt_by_theta_tilt_term = (
-        length_tilt_by_theta_tilt_term * length_tilt_term ** (-1.5)
-    )
-    length_tilt_by_theta_tilt_by_theta_tilt = (
-        -length_tilt_by_theta_tilt_by_theta_tilt_term * length_tilt_by_theta_tilt_term
-        + length_tilt_inverse_2
-        * (0.5 * cos_tilt_linkage_cos_tilt + 0.5 * linkage_sin_tilt_sin_tilt)
-    )
-    N_tilt_ratio_tilt_by_N_tilt_term_3 = N_tilt * ratio_tilt_by_N_tilt_term_3
-    ratio_tilt_by_theta_tilt_by_theta_tilt_term = (
-        N_tilt_ratio_tilt_by_N_tilt_term * ratio_tilt_by_theta_tilt_term_4
-    )
-    N_tilt_ratio_tilt_by_theta_tilt_term = N_tilt * ratio_tilt_by_theta_tilt_term
-    ratio_tilt_by_theta_tilt_by_theta_tilt_term_2 = (
-        N_tilt_ratio_tilt_by_theta_tilt_term * ratio_tilt_by_theta_tilt_term_4
-    )
-    ratio_tilt_by_theta_tilt_by_theta_tilt_term_3 = (
-        2.0
-        * math.pi
-        * N_tilt
-        * lead_tilt_inverse
-        * length_tilt_by_theta_tilt
-        * ratio_tilt_by_N_tilt_term
-        / (length_tilt * length_tilt * length_tilt)
-        - ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
-    )
-    ratio_tilt_by_theta_tilt_by_theta_tilt = (
-        -N_tilt_ratio_tilt_by_N_tilt_term_3 * ratio_tilt_by_N_tilt_term
-        - length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
-        + length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
-        - length_tilt_by_theta_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
-    )
-    J_motor_tilt_ratio_tilt = J_motor_tilt * ratio_tilt
-    J_motor_tilt_ratio_tilt_omega_tilt_sq = J_motor_tilt_ratio_tilt * omega_tilt_sq
-    driving_torque_tilt_by_theta_tilt_term = (
-        K_t_tilt * i_tilt - 2.0 * b_motor_tilt_omega_tilt_ratio_tilt - driving_torque_tilt_term
-    )
-    driving_torque_tilt_by_theta_tilt_term_2 = (
-        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_theta_tilt
-        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_theta_tilt
-    )
-    driving_torque_tilt_by_theta_tilt = -driving_torque_tilt_by_theta_tilt_term_2
-    twice_mass_pan_inverse_mass_pan_tilt = 2.0 * mass_pan_inverse_mass_pan_tilt
-    load_inertia_tilt_by_theta_tilt_term = 1.0 / (mass_pan * mass_pan)
-    load_inertia_tilt_by_theta_tilt_term_2 = load_inertia_tilt_by_theta_tilt_term * mass_pan_tilt_sq
-    load_inertia_tilt_by_theta_tilt = (
-        -follower_coupling_tilt_by_theta_tilt * twice_mass_pan_inverse_mass_pan_tilt
-        + follower_inertia_tilt_by_theta_tilt * load_inertia_tilt_by_theta_tilt_term_2
-    )
-    follower_torque_tilt_by_theta_tilt = -accel_pan_by_theta_tilt_term
-    half_omega_pan = 0.5 * omega_pan
-    gravity_cos_tilt_sin_tilt = gravity_cos_tilt * sin_tilt
-    force_pan_mass_pan_inverse = force_pan * mass_pan_inverse
-    load_torque_tilt_by_theta_tilt_term = (
-        force_pan * load_inertia_tilt_by_theta_tilt_term * mass_pan_tilt
-    )
-    load_torque_tilt_by_theta_tilt = (
-        coriolis_by_theta_tilt * half_omega_pan
-        + cos_tilt * gravity_sin_tilt
-        - follower_coupling_tilt_by_theta_tilt * force_pan_mass_pan_inverse
-        + follower_inertia_tilt_by_theta_tilt * load_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_theta_tilt * mass_pan_inverse_mass_pan_tilt
-        - gravity_cos_tilt_sin_tilt
-    )
-    twice_ratio_tilt_by_theta_tilt = 2.0 * ratio_tilt_by_theta_tilt
-    J_motor_tilt_ratio_tilt_load_torque_tilt = J_motor_tilt_ratio_tilt * load_torque_tilt
-    carried_tilt_by_theta_tilt = (
-        -J_motor_tilt_ratio_tilt_load_torque_tilt * twice_ratio_tilt_by_theta_tilt
-        - J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_tilt
-        + driving_torque_tilt * load_inertia_tilt_by_theta_tilt
-        + driving_torque_tilt_by_theta_tilt * load_inertia_tilt
-    )
-    lost_lowering_tilt_by_theta_tilt_term = (
-        lost_lowering_tilt_term
-        * (0.0 if lost_lowering_tilt_term_2 == 0 else math.copysign(1, lost_lowering_tilt_term_2))
-        / (lost_lowering_tilt_term_2 * lost_lowering_tilt_term_2)
-    )
-    lost_lowering_tilt_by_theta_tilt_term_2 = lost_lowering_tilt_by_theta_tilt_term * lowered_tilt
-    lost_lowering_tilt_by_theta_tilt_term_3 = (
-        J_motor_tilt_ratio_tilt * lost_lowering_tilt_by_theta_tilt_term
-    )
-    lost_lowering_tilt_by_theta_tilt = (
-        -load_inertia_tilt_by_theta_tilt * lost_lowering_tilt_by_theta_tilt_term_2
-        - lost_lowering_tilt_by_theta_tilt_term_3 * twice_ratio_tilt_by_theta_tilt
-    )
-    lost_raising_tilt_by_theta_tilt_term = lost_raising_tilt_term / (
-        lost_raising_tilt_term_2 * lost_raising_tilt_term_2
-    )
-    lost_raising_tilt_by_theta_tilt_term_2 = lost_raising_tilt_by_theta_tilt_term * raised_tilt
-    lost_raising_tilt_by_theta_tilt_term_3 = (
-        J_motor_tilt_ratio_tilt * lost_raising_tilt_by_theta_tilt_term
-    )
-    lost_raising_tilt_by_theta_tilt = (
-        -load_inertia_tilt_by_theta_tilt * lost_raising_tilt_by_theta_tilt_term_2
-        - lost_raising_tilt_by_theta_tilt_term_3 * twice_ratio_tilt_by_theta_tilt
-    )
-    half_carried_tilt_slide_tilt = 0.5 * carried_tilt_slide_tilt
-    accel_pan_by_theta_tilt_term_3 = slide_tilt * (
-        0.5 * force_tilt_term - half_carried_tilt_slide_tilt
-    )
-    accel_pan_by_theta_tilt_term_4 = slide_tilt * (
-        half_carried_tilt_slide_tilt + half_force_tilt_term
-    )
-    J_motor_tilt_ratio_tilt_accel_tilt = J_motor_tilt_ratio_tilt * accel_tilt
-    accel_pan_by_theta_tilt_term_5 = (
-        -J_motor_tilt_ratio_tilt_accel_tilt * twice_ratio_tilt_by_theta_tilt
-        - accel_pan * follower_coupling_tilt_by_theta_tilt
-        - accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_theta_tilt
-        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_theta_tilt
-        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_theta_tilt
-        + 0.5 * coriolis_by_theta_tilt * omega_pan
-        + cos_tilt * gravity_sin_tilt
-        - driving_torque_tilt_by_theta_tilt_term_2
-        - gravity_cos_tilt_sin_tilt
-    )
-    fx[2, 1] = inverse_determinant * (
-        accel_pan_by_theta_tilt_term_2 * mass_tilt
-        - accel_pan_by_theta_tilt_term_5 * mass_pan_tilt_slide_tilt_sq
-    )
-    fx[3, 1] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_theta_tilt_term_2 * mass_pan_tilt_slide_tilt_sq
-        + accel_pan_by_theta_tilt_term_5 * mass_pan
-    )
-    L_tilt_inverse = 1.0 / L_tilt
-    K_t_tilt_L_tilt_inverse_omega_tilt = K_t_tilt * L_tilt_inverse * omega_tilt
-    fx[7, 1] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_theta_tilt
-    fx[0, 2] = 1.0
-    follower_torque_tilt_by_omega_gear_pan = active_pan * d_shaft_pan
-    follower_torque_tilt_by_omega_pan = (
-        -b_pan - coriolis_by_omega_pan * omega_tilt - follower_torque_tilt_by_omega_gear_pan
-    )
-    load_torque_tilt_by_omega_pan_term = coriolis_by_omega_pan * half_omega_pan + half_coriolis
-    load_torque_tilt_by_omega_pan = (
-        -follower_torque_tilt_by_omega_pan * mass_pan_inverse_mass_pan_tilt
-        + load_torque_tilt_by_omega_pan_term
-    )
-    carried_tilt_by_omega_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_pan
-    accel_pan_by_omega_pan_term = (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_omega_pan
-        + load_torque_tilt_by_omega_pan_term
-    )
-    fx[2, 2] = inverse_determinant * (
-        -accel_pan_by_omega_pan_term * mass_pan_tilt_slide_tilt_sq
-        + follower_torque_tilt_by_omega_pan * mass_tilt
-    )
-    fx[3, 2] = inverse_determinant_slide_tilt_sq * (
-        accel_pan_by_omega_pan_term * mass_pan
-        - follower_torque_tilt_by_omega_pan * mass_pan_tilt_slide_tilt_sq
-    )
-    fx[5, 2] = accel_gear_pan_by_theta_pan_term * follower_torque_tilt_by_omega_gear_pan
-    fx[1, 3] = 1.0
-    follower_torque_tilt_by_omega_tilt = -coriolis - 2.0 * force_pan_term
-    driving_torque_tilt_by_omega_tilt_term = (
-        J_motor_tilt * omega_tilt_ratio_tilt * twice_ratio_tilt_by_theta_tilt
-        + b_motor_tilt * ratio_tilt_sq
-    )
-    driving_torque_tilt_by_omega_tilt = -driving_torque_tilt_by_omega_tilt_term
-    load_torque_tilt_by_omega_tilt = (
-        -b_tilt - follower_torque_tilt_by_omega_tilt * mass_pan_inverse_mass_pan_tilt
-    )
-    carried_tilt_by_omega_tilt = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_tilt
-        + driving_torque_tilt_by_omega_tilt * load_inertia_tilt
-    )
-    accel_pan_by_omega_tilt_term = (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_omega_tilt
-        - b_tilt
-        - driving_torque_tilt_by_omega_tilt_term
-    )
-    fx[2, 3] = inverse_determinant * (
-        -accel_pan_by_omega_tilt_term * mass_pan_tilt_slide_tilt_sq
-        + follower_torque_tilt_by_omega_tilt * mass_tilt
-    )
-    fx[3, 3] = inverse_determinant_slide_tilt_sq * (
-        accel_pan_by_omega_tilt_term * mass_pan
-        - follower_torque_tilt_by_omega_tilt * mass_pan_tilt_slide_tilt_sq
-    )
-    driving_torque_tilt_by_i_tilt = K_t_tilt * ratio_tilt
-    fx[7, 3] = -L_tilt_inverse * driving_torque_tilt_by_i_tilt
-    load_torque_tilt_by_theta_gear_pan = (
-        -follower_torque_tilt_by_theta_gear_pan * mass_pan_inverse_mass_pan_tilt
-    )
-    carried_tilt_by_theta_gear_pan = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_gear_pan
-    )
-    accel_pan_by_theta_gear_pan_term = (
-        accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_theta_gear_pan
-    )
-    fx[2, 4] = inverse_determinant * (
-        accel_pan_by_theta_gear_pan_term * mass_pan_tilt + accel_pan_by_theta_pan_term
-    )
-    fx[3, 4] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_theta_gear_pan_term * mass_pan - accel_tilt_by_theta_pan_term
-    )
-    fx[5, 4] = -accel_gear_pan_by_theta_pan_term_2
-    load_torque_tilt_by_omega_gear_pan = (
-        -follower_torque_tilt_by_omega_gear_pan * mass_pan_inverse_mass_pan_tilt
-    )
-    carried_tilt_by_omega_gear_pan = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_gear_pan
-    )
-    accel_pan_by_omega_gear_pan_term = (
-        accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_omega_gear_pan
-    )
-    fx[2, 5] = inverse_determinant * (
-        accel_pan_by_omega_gear_pan_term * mass_pan_tilt
-        + follower_torque_tilt_by_omega_gear_pan * mass_tilt
-    )
-    fx[3, 5] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_omega_gear_pan_term * mass_pan
-        - follower_torque_tilt_by_omega_gear_pan * mass_pan_tilt_slide_tilt_sq
-    )
-    fx[4, 5] = 1.0
-    viscous_coefficient_pan_term = a_F_v_pan * slide_pan + 1.0
-    viscous_coefficient_pan = F_v_pan * viscous_coefficient_pan_term
-    slide_pan_viscous_coefficient_pan = slide_pan * viscous_coefficient_pan
-    stribeck_square_pan_term = 1.0 / (v_s_pan * v_s_pan)
-    stribeck_square_pan_term_2 = a_v_s_pan * slide_pan + 1.0
-    stribeck_square_pan_term_3 = 1.0 / (stribeck_square_pan_term_2 * stribeck_square_pan_term_2)
-    stribeck_square_pan_term_4 = stribeck_square_pan_term * stribeck_square_pan_term_3
-    coulomb_torque_pan_term = a_F_c_pan * slide_pan + 1.0
-    coulomb_torque_pan = F_c_pan * coulomb_torque_pan_term
-    accel_gear_pan_by_omega_gear_pan_term = a_F_s_pan * slide_pan + 1.0
-    omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
-    stribeck_square_pan = omega_gear_pan_sq * stribeck_square_pan_term_4
-    accel_gear_pan_by_omega_gear_pan_term_2 = math.exp(-stribeck_square_pan)
-    accel_gear_pan_by_omega_gear_pan_term_3 = accel_gear_pan_by_omega_gear_pan_term_2 * (
-        F_s_pan * accel_gear_pan_by_omega_gear_pan_term - coulomb_torque_pan
-    )
-    accel_gear_pan_by_omega_gear_pan_term_4 = 2.0 * accel_gear_pan_by_omega_gear_pan_term_3
-    fx[5, 5] = accel_gear_pan_by_theta_pan_term * (
-        -follower_torque_tilt_by_omega_gear_pan
-        - slide_pan
-        * (
-            -accel_gear_pan_by_omega_gear_pan_term_4 * omega_gear_pan * stribeck_square_pan_term_4
-            + slide_pan_viscous_coefficient_pan
-        )
-    )
-    L_pan_inverse = 1.0 / L_pan
-    K_t_pan_N_pan = K_t_pan * N_pan
-    fx[6, 5] = -K_t_pan_N_pan * L_pan_inverse
-    fx[5, 6] = K_t_pan_N_pan * accel_gear_pan_by_theta_pan_term
-    fx[6, 6] = -L_pan_inverse * R_pan
-    carried_tilt_by_i_tilt = driving_torque_tilt_by_i_tilt * load_inertia_tilt
-    accel_pan_by_i_tilt_term = (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_i_tilt
-        + driving_torque_tilt_by_i_tilt
-    )
-    accel_pan_by_i_tilt_term_2 = inverse_determinant * mass_pan_tilt_slide_tilt_sq
-    fx[2, 7] = -accel_pan_by_i_tilt_term * accel_pan_by_i_tilt_term_2
-    accel_tilt_by_i_tilt_term = inverse_determinant_slide_tilt_sq * mass_pan
-    fx[3, 7] = accel_pan_by_i_tilt_term * accel_tilt_by_i_tilt_term
-    fx[7, 7] = -L_tilt_inverse * R_tilt
-    fu[6, 0] = L_pan_inverse
-    fu[7, 1] = L_tilt_inverse
-    accel_pan_by_J_pan_term = accel_pan
-    load_inertia_tilt_by_J_pan = load_inertia_tilt_by_theta_tilt_term_2
-    load_torque_tilt_by_J_pan = load_torque_tilt_by_theta_tilt_term
-    carried_tilt_by_J_pan = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_pan
-        + driving_torque_tilt * load_inertia_tilt_by_J_pan
-    )
-    lost_lowering_tilt_by_J_pan = (
-        -load_inertia_tilt_by_J_pan * lost_lowering_tilt_by_theta_tilt_term_2
-    )
-    lost_raising_tilt_by_J_pan = (
-        -load_inertia_tilt_by_J_pan * lost_raising_tilt_by_theta_tilt_term_2
-    )
-    accel_pan_by_J_pan_term_2 = (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_pan
-        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_J_pan
-        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_J_pan
-    )
-    fp[2, 0] = inverse_determinant * (
-        -accel_pan_by_J_pan_term * mass_tilt
-        - accel_pan_by_J_pan_term_2 * mass_pan_tilt_slide_tilt_sq
-    )
-    fp[3, 0] = inverse_determinant_slide_tilt_sq * (
-        accel_pan_by_J_pan_term * mass_pan_tilt_slide_tilt_sq + accel_pan_by_J_pan_term_2 * mass_pan
-    )
-    inertia_pan_per_sin_tilt_by_J_x_tilt = sin_tilt
-    follower_inertia_tilt_by_J_x_tilt = inertia_pan_per_sin_tilt_by_J_x_tilt * sin_tilt
-    cos_tilt_twice_omega_pan = cos_tilt * twice_omega_pan
-    coriolis_by_J_x_tilt = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_x_tilt
-    coriolis_by_J_x_tilt_omega_tilt = coriolis_by_J_x_tilt * omega_tilt
-    accel_pan_by_J_x_tilt_term = (
-        -accel_pan * follower_inertia_tilt_by_J_x_tilt - coriolis_by_J_x_tilt_omega_tilt
-    )
-    load_inertia_tilt_by_J_x_tilt = (
-        follower_inertia_tilt_by_J_x_tilt * load_inertia_tilt_by_theta_tilt_term_2
-    )
-    follower_torque_tilt_by_J_x_tilt = -coriolis_by_J_x_tilt_omega_tilt
-    load_torque_tilt_by_J_x_tilt = (
-        coriolis_by_J_x_tilt * half_omega_pan
-        + follower_inertia_tilt_by_J_x_tilt * load_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_J_x_tilt * mass_pan_inverse_mass_pan_tilt
-    )
-    carried_tilt_by_J_x_tilt = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_x_tilt
-        + driving_torque_tilt * load_inertia_tilt_by_J_x_tilt
-    )
-    lost_lowering_tilt_by_J_x_tilt = (
-        -load_inertia_tilt_by_J_x_tilt * lost_lowering_tilt_by_theta_tilt_term_2
-    )
-    lost_raising_tilt_by_J_x_tilt = (
-        -load_inertia_tilt_by_J_x_tilt * lost_raising_tilt_by_theta_tilt_term_2
-    )
-    accel_pan_by_J_x_tilt_term_2 = (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_x_tilt
-        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_J_x_tilt
-        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_J_x_tilt
-        + 0.5 * coriolis_by_J_x_tilt * omega_pan
-    )
-    fp[2, 1] = inverse_determinant * (
-        accel_pan_by_J_x_tilt_term * mass_tilt
-        - accel_pan_by_J_x_tilt_term_2 * mass_pan_tilt_slide_tilt_sq
-    )
-    fp[3, 1] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_J_x_tilt_term * mass_pan_tilt_slide_tilt_sq
-        + accel_pan_by_J_x_tilt_term_2 * mass_pan
-    )
-    carried_tilt_by_J_y_tilt = driving_torque_tilt
-    lost_lowering_tilt_by_J_y_tilt = -lost_lowering_tilt_by_theta_tilt_term_2
-    lost_raising_tilt_by_J_y_tilt = -lost_raising_tilt_by_theta_tilt_term_2
-    accel_pan_by_J_y_tilt_term = (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_y_tilt
-        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_J_y_tilt
-        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_J_y_tilt
-        - accel_tilt
-    )
-    fp[2, 2] = -accel_pan_by_J_y_tilt_term * accel_pan_by_i_tilt_term_2
-    fp[3, 2] = accel_pan_by_J_y_tilt_term * accel_tilt_by_i_tilt_term
-    inertia_pan_per_sin_tilt_by_J_z_tilt = -sin_tilt
-    follower_inertia_tilt_by_J_z_tilt = inertia_pan_per_sin_tilt_by_J_z_tilt * sin_tilt + 1.0
-    coriolis_by_J_z_tilt = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_z_tilt
-    coriolis_by_J_z_tilt_omega_tilt = coriolis_by_J_z_tilt * omega_tilt
-    accel_pan_by_J_z_tilt_term = (
-        -accel_pan * follower_inertia_tilt_by_J_z_tilt - coriolis_by_J_z_tilt_omega_tilt
-    )
-    load_inertia_tilt_by_J_z_tilt = (
-        follower_inertia_tilt_by_J_z_tilt * load_inertia_tilt_by_theta_tilt_term_2
-    )
-    follower_torque_tilt_by_J_z_tilt = -coriolis_by_J_z_tilt_omega_tilt
-    load_torque_tilt_by_J_z_tilt = (
-        coriolis_by_J_z_tilt * half_omega_pan
-        + follower_inertia_tilt_by_J_z_tilt * load_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_J_z_tilt * mass_pan_inverse_mass_pan_tilt
-    )
-    carried_tilt_by_J_z_tilt = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_z_tilt
-        + driving_torque_tilt * load_inertia_tilt_by_J_z_tilt
-    )
-    lost_lowering_tilt_by_J_z_tilt = (
-        -load_inertia_tilt_by_J_z_tilt * lost_lowering_tilt_by_theta_tilt_term_2
-    )
-    lost_raising_tilt_by_J_z_tilt = (
-        -load_inertia_tilt_by_J_z_tilt * lost_raising_tilt_by_theta_tilt_term_2
-    )
-    accel_pan_by_J_z_tilt_term_2 = (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_z_tilt
-        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_J_z_tilt
-        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_J_z_tilt
-        + 0.5 * coriolis_by_J_z_tilt * omega_pan
-    )
-    fp[2, 3] = inverse_determinant * (
-        accel_pan_by_J_z_tilt_term * mass_tilt
-        - accel_pan_by_J_z_tilt_term_2 * mass_pan_tilt_slide_tilt_sq
-    )
-    fp[3, 3] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_J_z_tilt_term * mass_pan_tilt_slide_tilt_sq
-        + accel_pan_by_J_z_tilt_term_2 * mass_pan
-    )
-    coupling_cos_tilt_by_m_payload = c_y_payload * c_z_payload
-    follower_coupling_tilt_by_m_payload = (
-        -cos_tilt * coupling_cos_tilt_by_m_payload + coupling_sin_tilt_by_m_payload * sin_tilt
-    )
-    inertia_pan_by_m_payload = c_x_payload_sq + c_y_payload_sq
-    inertia_pan_sin_cos_tilt_by_m_payload = 2.0 * c_x_payload * c_z_payload
-    inertia_pan_sin_sq_tilt_by_m_payload = -c_x_payload_sq + c_z_payload_sq
-    inertia_pan_per_sin_tilt_by_m_payload = (
-        cos_tilt * inertia_pan_sin_cos_tilt_by_m_payload
-        + inertia_pan_sin_sq_tilt_by_m_payload * sin_tilt
-    )
-    follower_inertia_tilt_by_m_payload = (
-        inertia_pan_by_m_payload + inertia_pan_per_sin_tilt_by_m_payload * sin_tilt
-    )
-    coriolis_by_m_payload = (
-        cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_m_payload
-        - inertia_pan_sin_cos_tilt_by_m_payload * omega_pan
-    )
-    omega_tilt_sq_sin_tilt = omega_tilt_sq * sin_tilt
-    cos_tilt_omega_tilt_sq = cos_tilt * omega_tilt_sq
-    accel_pan_by_m_payload_term = (
-        coriolis_by_m_payload * omega_tilt
-        + cos_tilt_omega_tilt_sq * coupling_sin_tilt_by_m_payload
-        + coupling_cos_tilt_by_m_payload * omega_tilt_sq_sin_tilt
-    )
-    accel_pan_by_m_payload_term_2 = (
-        -accel_pan * follower_inertia_tilt_by_m_payload
-        - accel_pan_by_m_payload_term
-        - accel_tilt * follower_coupling_tilt_by_m_payload
-    )
-    inertia_tilt_by_m_payload = c_x_payload_sq + c_z_payload_sq
-    load_inertia_tilt_by_m_payload = (
-        -follower_coupling_tilt_by_m_payload * twice_mass_pan_inverse_mass_pan_tilt
-        + follower_inertia_tilt_by_m_payload * load_inertia_tilt_by_theta_tilt_term_2
-        + inertia_tilt_by_m_payload
-    )
-    follower_torque_tilt_by_m_payload = -accel_pan_by_m_payload_term
-    gravity_cos_tilt_by_m_payload = c_x_payload * gravity
-    gravity_sin_tilt_by_m_payload = c_z_payload * gravity
-    load_torque_tilt_by_m_payload = (
-        coriolis_by_m_payload * half_omega_pan
-        + cos_tilt * gravity_cos_tilt_by_m_payload
-        - follower_coupling_tilt_by_m_payload * force_pan_mass_pan_inverse
-        + follower_inertia_tilt_by_m_payload * load_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_m_payload * mass_pan_inverse_mass_pan_tilt
-        + gravity_sin_tilt_by_m_payload * sin_tilt
-    )
-    carried_tilt_by_m_payload = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_m_payload
-        + driving_torque_tilt * load_inertia_tilt_by_m_payload
-    )
-    lost_lowering_tilt_by_m_payload = (
-        -load_inertia_tilt_by_m_payload * lost_lowering_tilt_by_theta_tilt_term_2
-    )
-    lost_raising_tilt_by_m_payload = (
-        -load_inertia_tilt_by_m_payload * lost_raising_tilt_by_theta_tilt_term_2
-    )
-    accel_pan_by_m_payload_term_3 = (
-        -accel_pan * follower_coupling_tilt_by_m_payload
-        - accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_m_payload
-        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_m_payload
-        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_m_payload
-        - accel_tilt * inertia_tilt_by_m_payload
-        + 0.5 * coriolis_by_m_payload * omega_pan
-        + cos_tilt * gravity_cos_tilt_by_m_payload
-        + gravity_sin_tilt_by_m_payload * sin_tilt
-    )
-    fp[2, 4] = inverse_determinant * (
-        accel_pan_by_m_payload_term_2 * mass_tilt
-        - accel_pan_by_m_payload_term_3 * mass_pan_tilt_slide_tilt_sq
-    )
-    fp[3, 4] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_m_payload_term_2 * mass_pan_tilt_slide_tilt_sq
-        + accel_pan_by_m_payload_term_3 * mass_pan
-    )
-    inertia_pan_per_sin_tilt_by_J_x_payload = sin_tilt
-    follower_inertia_tilt_by_J_x_payload = inertia_pan_per_sin_tilt_by_J_x_payload * sin_tilt
-    coriolis_by_J_x_payload = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_x_payload
-    coriolis_by_J_x_payload_omega_tilt = coriolis_by_J_x_payload * omega_tilt
-    accel_pan_by_J_x_payload_term = (
-        -accel_pan * follower_inertia_tilt_by_J_x_payload - coriolis_by_J_x_payload_omega_tilt
-    )
-    load_inertia_tilt_by_J_x_payload = (
-        follower_inertia_tilt_by_J_x_payload * load_inertia_tilt_by_theta_tilt_term_2
-    )
-    follower_torque_tilt_by_J_x_payload = -coriolis_by_J_x_payload_omega_tilt
-    load_torque_tilt_by_J_x_payload = (
-        coriolis_by_J_x_payload * half_omega_pan
-        + follower_inertia_tilt_by_J_x_payload * load_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_J_x_payload * mass_pan_inverse_mass_pan_tilt
-    )
-    carried_tilt_by_J_x_payload = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_x_payload
-        + driving_torque_tilt * load_inertia_tilt_by_J_x_payload
-    )
-    lost_lowering_tilt_by_J_x_payload = (
-        -load_inertia_tilt_by_J_x_payload * lost_lowering_tilt_by_theta_tilt_term_2
-    )
-    lost_raising_tilt_by_J_x_payload = (
-        -load_inertia_tilt_by_J_x_payload * lost_raising_tilt_by_theta_tilt_term_2
-    )
-    accel_pan_by_J_x_payload_term_2 = (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_x_payload
-        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_J_x_payload
-        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_J_x_payload
-        + 0.5 * coriolis_by_J_x_payload * omega_pan
-    )
-    fp[2, 5] = inverse_determinant * (
-        accel_pan_by_J_x_payload_term * mass_tilt
-        - accel_pan_by_J_x_payload_term_2 * mass_pan_tilt_slide_tilt_sq
-    )
-    fp[3, 5] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_J_x_payload_term * mass_pan_tilt_slide_tilt_sq
-        + accel_pan_by_J_x_payload_term_2 * mass_pan
-    )
-    carried_tilt_by_J_y_payload = driving_torque_tilt
-    lost_lowering_tilt_by_J_y_payload = -lost_lowering_tilt_by_theta_tilt_term_2
-    lost_raising_tilt_by_J_y_payload = -lost_raising_tilt_by_theta_tilt_term_2
-    accel_pan_by_J_y_payload_term = (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_y_payload
-        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_J_y_payload
-        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_J_y_payload
-        - accel_tilt
-    )
-    fp[2, 6] = -accel_pan_by_J_y_payload_term * accel_pan_by_i_tilt_term_2
-    fp[3, 6] = accel_pan_by_J_y_payload_term * accel_tilt_by_i_tilt_term
-    inertia_pan_per_sin_tilt_by_J_z_payload = -sin_tilt
-    follower_inertia_tilt_by_J_z_payload = inertia_pan_per_sin_tilt_by_J_z_payload * sin_tilt + 1.0
-    coriolis_by_J_z_payload = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_z_payload
-    coriolis_by_J_z_payload_omega_tilt = coriolis_by_J_z_payload * omega_tilt
-    accel_pan_by_J_z_payload_term = (
-        -accel_pan * follower_inertia_tilt_by_J_z_payload - coriolis_by_J_z_payload_omega_tilt
-    )
-    load_inertia_tilt_by_J_z_payload = (
-        follower_inertia_tilt_by_J_z_payload * load_inertia_tilt_by_theta_tilt_term_2
-    )
-    follower_torque_tilt_by_J_z_payload = -coriolis_by_J_z_payload_omega_tilt
-    load_torque_tilt_by_J_z_payload = (
-        coriolis_by_J_z_payload * half_omega_pan
-        + follower_inertia_tilt_by_J_z_payload * load_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_J_z_payload * mass_pan_inverse_mass_pan_tilt
-    )
-    carried_tilt_by_J_z_payload = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_z_payload
-        + driving_torque_tilt * load_inertia_tilt_by_J_z_payload
-    )
-    lost_lowering_tilt_by_J_z_payload = (
-        -load_inertia_tilt_by_J_z_payload * lost_lowering_tilt_by_theta_tilt_term_2
-    )
-    lost_raising_tilt_by_J_z_payload = (
-        -load_inertia_tilt_by_J_z_payload * lost_raising_tilt_by_theta_tilt_term_2
-    )
-    accel_pan_by_J_z_payload_term_2 = (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_z_payload
-        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_J_z_payload
-        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_J_z_payload
-        + 0.5 * coriolis_by_J_z_payload * omega_pan
-    )
-    fp[2, 7] = inverse_determinant * (
-        accel_pan_by_J_z_payload_term * mass_tilt
-        - accel_pan_by_J_z_payload_term_2 * mass_pan_tilt_slide_tilt_sq
-    )
-    fp[3, 7] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_J_z_payload_term * mass_pan_tilt_slide_tilt_sq
-        + accel_pan_by_J_z_payload_term_2 * mass_pan
-    )
-    follower_coupling_tilt_by_c_x_payload = coupling_cos_tilt_by_c_z_payload * sin_tilt
-    inertia_pan_sin_sq_tilt_by_c_x_payload = -inertia_tilt_by_c_x_payload
-    inertia_tilt_by_c_z_payload = 2.0 * gravity_sin_tilt_by_gravity
-    inertia_pan_per_sin_tilt_by_c_x_payload = (
-        cos_tilt * inertia_tilt_by_c_z_payload + inertia_pan_sin_sq_tilt_by_c_x_payload * sin_tilt
-    )
-    follower_inertia_tilt_by_c_x_payload = (
-        inertia_pan_per_sin_tilt_by_c_x_payload * sin_tilt + inertia_tilt_by_c_x_payload
-    )
-    coriolis_by_c_x_payload = (
-        cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_c_x_payload
-        - inertia_tilt_by_c_z_payload * omega_pan
-    )
-    accel_pan_by_c_x_payload_term = (
-        coriolis_by_c_x_payload * omega_tilt
-        + cos_tilt_omega_tilt_sq * coupling_cos_tilt_by_c_z_payload
-    )
-    accel_pan_by_c_x_payload_term_2 = (
-        -accel_pan * follower_inertia_tilt_by_c_x_payload
-        - accel_pan_by_c_x_payload_term
-        - accel_tilt * follower_coupling_tilt_by_c_x_payload
-    )
-    load_inertia_tilt_by_c_x_payload = (
-        -follower_coupling_tilt_by_c_x_payload * twice_mass_pan_inverse_mass_pan_tilt
-        + follower_inertia_tilt_by_c_x_payload * load_inertia_tilt_by_theta_tilt_term_2
-        + inertia_tilt_by_c_x_payload
-    )
-    follower_torque_tilt_by_c_x_payload = -accel_pan_by_c_x_payload_term
-    gravity_cos_tilt_by_c_x_payload = gravity * m_payload
-    load_torque_tilt_by_c_x_payload = (
-        coriolis_by_c_x_payload * half_omega_pan
-        + cos_tilt * gravity_cos_tilt_by_c_x_payload
-        - follower_coupling_tilt_by_c_x_payload * force_pan_mass_pan_inverse
-        + follower_inertia_tilt_by_c_x_payload * load_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_c_x_payload * mass_pan_inverse_mass_pan_tilt
-    )
-    carried_tilt_by_c_x_payload = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_x_payload
-        + driving_torque_tilt * load_inertia_tilt_by_c_x_payload
-    )
-    lost_lowering_tilt_by_c_x_payload = (
-        -load_inertia_tilt_by_c_x_payload * lost_lowering_tilt_by_theta_tilt_term_2
-    )
-    lost_raising_tilt_by_c_x_payload = (
-        -load_inertia_tilt_by_c_x_payload * lost_raising_tilt_by_theta_tilt_term_2
-    )
-    accel_pan_by_c_x_payload_term_3 = (
-        -accel_pan * follower_coupling_tilt_by_c_x_payload
-        - accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_c_x_payload
-        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_c_x_payload
-        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_c_x_payload
-        - accel_tilt * inertia_tilt_by_c_x_payload
-        + 0.5 * coriolis_by_c_x_payload * omega_pan
-        + cos_tilt * gravity_cos_tilt_by_c_x_payload
-    )
-    fp[2, 8] = inverse_determinant * (
-        accel_pan_by_c_x_payload_term_2 * mass_tilt
-        - accel_pan_by_c_x_payload_term_3 * mass_pan_tilt_slide_tilt_sq
-    )
-    fp[3, 8] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_c_x_payload_term_2 * mass_pan_tilt_slide_tilt_sq
-        + accel_pan_by_c_x_payload_term_3 * mass_pan
-    )
-    follower_coupling_tilt_by_c_y_payload = (
-        -cos_tilt * gravity_sin_tilt_by_gravity + gravity_cos_tilt_by_gravity * sin_tilt
-    )
-    inertia_pan_by_c_y_payload = 2.0 * coupling_cos_tilt_by_c_z_payload
-    accel_pan_by_c_y_payload_term = (
-        cos_tilt_omega_tilt_sq * gravity_cos_tilt_by_gravity
-        + gravity_sin_tilt_by_gravity * omega_tilt_sq_sin_tilt
-    )
-    accel_pan_by_c_y_payload_term_2 = (
-        -accel_pan * inertia_pan_by_c_y_payload
-        - accel_pan_by_c_y_payload_term
-        - accel_tilt * follower_coupling_tilt_by_c_y_payload
-    )
-    load_inertia_tilt_by_c_y_payload = (
-        -follower_coupling_tilt_by_c_y_payload * twice_mass_pan_inverse_mass_pan_tilt
-        + inertia_pan_by_c_y_payload * load_inertia_tilt_by_theta_tilt_term_2
-    )
-    follower_torque_tilt_by_c_y_payload = -accel_pan_by_c_y_payload_term
-    load_torque_tilt_by_c_y_payload = (
-        -follower_coupling_tilt_by_c_y_payload * force_pan_mass_pan_inverse
-        - follower_torque_tilt_by_c_y_payload * mass_pan_inverse_mass_pan_tilt
-        + force_pan
-        * inertia_pan_by_c_y_payload
-        * load_inertia_tilt_by_theta_tilt_term
-        * mass_pan_tilt
-    )
-    carried_tilt_by_c_y_payload = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_y_payload
-        + driving_torque_tilt * load_inertia_tilt_by_c_y_payload
-    )
-    lost_lowering_tilt_by_c_y_payload = (
-        -load_inertia_tilt_by_c_y_payload * lost_lowering_tilt_by_theta_tilt_term_2
-    )
-    lost_raising_tilt_by_c_y_payload = (
-        -load_inertia_tilt_by_c_y_payload * lost_raising_tilt_by_theta_tilt_term_2
-    )
-    accel_pan_by_c_y_payload_term_3 = (
-        -accel_pan * follower_coupling_tilt_by_c_y_payload
-        - accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_c_y_payload
-        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_c_y_payload
-        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_c_y_payload
-    )
-    fp[2, 9] = inverse_determinant * (
-        accel_pan_by_c_y_payload_term_2 * mass_tilt
-        - accel_pan_by_c_y_payload_term_3 * mass_pan_tilt_slide_tilt_sq
-    )
-    fp[3, 9] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_c_y_payload_term_2 * mass_pan_tilt_slide_tilt_sq
-        + accel_pan_by_c_y_payload_term_3 * mass_pan
-    )
-    inertia_pan_per_sin_tilt_by_c_z_payload = (
-        cos_tilt * inertia_tilt_by_c_x_payload + inertia_tilt_by_c_z_payload * sin_tilt
-    )
-    follower_inertia_tilt_by_c_z_payload = inertia_pan_per_sin_tilt_by_c_z_payload * sin_tilt
-    coriolis_by_c_z_payload = (
-        cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_c_z_payload
-        - inertia_tilt_by_c_x_payload * omega_pan
-    )
-    accel_pan_by_c_z_payload_term = (
-        coriolis_by_c_z_payload * omega_tilt
-        + coupling_cos_tilt_by_c_z_payload * omega_tilt_sq_sin_tilt
-    )
-    accel_pan_by_c_z_payload_term_2 = (
-        -accel_pan * follower_inertia_tilt_by_c_z_payload
-        - accel_pan_by_c_z_payload_term
-        + accel_tilt * cos_tilt * coupling_cos_tilt_by_c_z_payload
-    )
-    follower_coupling_tilt_by_c_z_payload = -cos_tilt * coupling_cos_tilt_by_c_z_payload
-    load_inertia_tilt_by_c_z_payload = (
-        -follower_coupling_tilt_by_c_z_payload * twice_mass_pan_inverse_mass_pan_tilt
-        + follower_inertia_tilt_by_c_z_payload * load_inertia_tilt_by_theta_tilt_term_2
-        + inertia_tilt_by_c_z_payload
-    )
-    follower_torque_tilt_by_c_z_payload = -accel_pan_by_c_z_payload_term
-    load_torque_tilt_by_c_z_payload = (
-        coriolis_by_c_z_payload * half_omega_pan
-        - follower_coupling_tilt_by_c_z_payload * force_pan_mass_pan_inverse
-        + follower_inertia_tilt_by_c_z_payload * load_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_c_z_payload * mass_pan_inverse_mass_pan_tilt
-        + gravity_cos_tilt_by_c_x_payload * sin_tilt
-    )
-    carried_tilt_by_c_z_payload = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_z_payload
-        + driving_torque_tilt * load_inertia_tilt_by_c_z_payload
-    )
-    lost_lowering_tilt_by_c_z_payload = (
-        -load_inertia_tilt_by_c_z_payload * lost_lowering_tilt_by_theta_tilt_term_2
-    )
-    lost_raising_tilt_by_c_z_payload = (
-        -load_inertia_tilt_by_c_z_payload * lost_raising_tilt_by_theta_tilt_term_2
-    )
-    accel_pan_by_c_z_payload_term_3 = (
-        accel_pan * cos_tilt * coupling_cos_tilt_by_c_z_payload
-        - accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_c_z_payload
-        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_c_z_payload
-        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_c_z_payload
-        - accel_tilt * inertia_tilt_by_c_z_payload
-        + 0.5 * coriolis_by_c_z_payload * omega_pan
-        + gravity_cos_tilt_by_c_x_payload * sin_tilt
-    )
-    fp[2, 10] = inverse_determinant * (
-        accel_pan_by_c_z_payload_term_2 * mass_tilt
-        - accel_pan_by_c_z_payload_term_3 * mass_pan_tilt_slide_tilt_sq
-    )
-    fp[3, 10] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_c_z_payload_term_2 * mass_pan_tilt_slide_tilt_sq
-        + accel_pan_by_c_z_payload_term_3 * mass_pan
-    )
-    load_torque_tilt_by_b_pan = -follower_torque_tilt_by_b_pan * mass_pan_inverse_mass_pan_tilt
-    carried_tilt_by_b_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_b_pan
-    accel_pan_by_b_pan_term = accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_b_pan
-    fp[2, 11] = inverse_determinant * (
-        accel_pan_by_b_pan_term * mass_pan_tilt - mass_tilt * omega_pan
-    )
-    fp[3, 11] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_b_pan_term * mass_pan + mass_pan_tilt * omega_pan * slide_tilt_sq
-    )
-    load_torque_tilt_by_b_tilt = -omega_tilt
-    carried_tilt_by_b_tilt = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_b_tilt
-    accel_pan_by_b_tilt_term = (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_b_tilt - omega_tilt
-    )
-    fp[2, 12] = -accel_pan_by_b_tilt_term * accel_pan_by_i_tilt_term_2
-    fp[3, 12] = accel_pan_by_b_tilt_term * accel_tilt_by_i_tilt_term
-    inverse_mass_gear_pan_slide_pan = inverse_mass_gear_pan * slide_pan
-    fp[5, 13] = -inverse_mass_gear_pan_slide_pan * (
-        -accel_gear_pan_by_omega_gear_pan_term_2 * coulomb_torque_pan_term + coulomb_torque_pan_term
-    )
-    fp[5, 14] = (
-        -accel_gear_pan_by_omega_gear_pan_term
-        * accel_gear_pan_by_omega_gear_pan_term_2
-        * inverse_mass_gear_pan_slide_pan
-    )
-    accel_gear_pan_by_v_s_pan_term = accel_gear_pan_by_omega_gear_pan_term_4 * omega_gear_pan_sq
-    fp[5, 15] = (
-        -accel_gear_pan_by_v_s_pan_term
-        * inverse_mass_gear_pan_slide_pan
-        * stribeck_square_pan_term_3
-        / (v_s_pan * v_s_pan * v_s_pan)
-    )
-    fp[5, 16] = -accel_gear_pan_by_theta_pan_term * omega_gear_pan * viscous_coefficient_pan_term
-    F_c_pan_slide_pan = F_c_pan * slide_pan
-    fp[5, 17] = -inverse_mass_gear_pan_slide_pan * (
-        -F_c_pan_slide_pan * accel_gear_pan_by_omega_gear_pan_term_2 + F_c_pan_slide_pan
-    )
-    fp[5, 18] = (
-        -F_s_pan * accel_gear_pan_by_omega_gear_pan_term_2 * accel_gear_pan_by_theta_pan_term
-    )
-    fp[5, 19] = (
-        -accel_gear_pan_by_theta_pan_term
-        * accel_gear_pan_by_v_s_pan_term
-        * stribeck_square_pan_term
-        / (stribeck_square_pan_term_2 * stribeck_square_pan_term_2 * stribeck_square_pan_term_2)
-    )
-    fp[5, 20] = -F_v_pan * inverse_mass_gear_pan_slide_pan * omega_gear_pan
-    half_side_pan = 0.5 * side_pan
-    follower_torque_tilt_by_gap_pan_term = follower_torque_tilt_by_theta_gear_pan * half_side_pan
-    follower_torque_tilt_by_gap_pan = -follower_torque_tilt_by_gap_pan_term
-    load_torque_tilt_by_gap_pan = -follower_torque_tilt_by_gap_pan * mass_pan_inverse_mass_pan_tilt
-    carried_tilt_by_gap_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_gap_pan
-    fp[2, 21] = inverse_determinant * (
-        -accel_pan_by_theta_pan_term * half_side_pan
-        + accel_pan_by_theta_pan_term_4 * carried_tilt_by_gap_pan * mass_pan_tilt * slide_tilt
-    )
-    fp[3, 21] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_gap_pan * mass_pan
-        + follower_torque_tilt_by_gap_pan_term * mass_pan_tilt_slide_tilt_sq
-    )
-    fp[5, 21] = accel_gear_pan_by_theta_pan_term * follower_torque_tilt_by_gap_pan_term
-    follower_torque_tilt_by_k_shaft_pan = active_pan * shaft_torque_pan_term_2
-    load_torque_tilt_by_k_shaft_pan = (
-        -follower_torque_tilt_by_k_shaft_pan * mass_pan_inverse_mass_pan_tilt
-    )
-    carried_tilt_by_k_shaft_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_k_shaft_pan
-    accel_pan_by_k_shaft_pan_term = (
-        accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_k_shaft_pan
-    )
-    fp[2, 22] = inverse_determinant * (
-        accel_pan_by_k_shaft_pan_term * mass_pan_tilt
-        + follower_torque_tilt_by_k_shaft_pan * mass_tilt
-    )
-    fp[3, 22] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_k_shaft_pan_term * mass_pan
-        - follower_torque_tilt_by_k_shaft_pan * mass_pan_tilt_slide_tilt_sq
-    )
-    fp[5, 22] = -accel_gear_pan_by_theta_pan_term * follower_torque_tilt_by_k_shaft_pan
-    follower_torque_tilt_by_d_shaft_pan = active_pan * shaft_torque_pan_term
-    load_torque_tilt_by_d_shaft_pan = (
-        -follower_torque_tilt_by_d_shaft_pan * mass_pan_inverse_mass_pan_tilt
-    )
-    carried_tilt_by_d_shaft_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_d_shaft_pan
-    accel_pan_by_d_shaft_pan_term = (
-        accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_d_shaft_pan
-    )
-    fp[2, 23] = inverse_determinant * (
-        accel_pan_by_d_shaft_pan_term * mass_pan_tilt
-        + follower_torque_tilt_by_d_shaft_pan * mass_tilt
-    )
-    fp[3, 23] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_d_shaft_pan_term * mass_pan
-        - follower_torque_tilt_by_d_shaft_pan * mass_pan_tilt_slide_tilt_sq
-    )
-    fp[5, 23] = -accel_gear_pan_by_theta_pan_term * follower_torque_tilt_by_d_shaft_pan
-    fp[6, 24] = -(-K_t_pan_N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / (L_pan * L_pan)
-    fp[6, 25] = -L_pan_inverse * i_pan
-    fp[5, 26] = N_pan * accel_gear_pan_by_theta_pan_term * i_pan
-    L_pan_inverse_omega_gear_pan = L_pan_inverse * omega_gear_pan
-    fp[6, 26] = -L_pan_inverse_omega_gear_pan * N_pan
-    force_gear_pan = (
-        K_t_pan * N_pan * i_pan
-        - shaft_torque_pan
-        - slide_pan
-        * (
-            accel_gear_pan_by_omega_gear_pan_term_3
-            + coulomb_torque_pan
-            + omega_gear_pan * slide_pan_viscous_coefficient_pan
-        )
-    )
-    accel_gear_pan = accel_gear_pan_by_theta_pan_term * force_gear_pan
-    fp[5, 27] = -N_pan_sq * accel_gear_pan * accel_gear_pan_by_theta_pan_term
-    fp[5, 28] = accel_gear_pan_by_theta_pan_term * (
-        -2.0 * J_motor_pan * N_pan * accel_gear_pan + K_t_pan * i_pan
-    )
-    fp[6, 28] = -K_t_pan * L_pan_inverse_omega_gear_pan
-    fp[7, 29] = -(-R_tilt * i_tilt - driving_torque_tilt_by_i_tilt * omega_tilt + u_tilt) / (
-        L_tilt * L_tilt
-    )
-    fp[7, 30] = -L_tilt_inverse * i_tilt
-    driving_torque_tilt_by_K_t_tilt = i_tilt * ratio_tilt
-    carried_tilt_by_K_t_tilt = driving_torque_tilt_by_K_t_tilt * load_inertia_tilt
-    accel_pan_by_K_t_tilt_term = (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_K_t_tilt + i_tilt * ratio_tilt
-    )
-    fp[2, 31] = -accel_pan_by_K_t_tilt_term * accel_pan_by_i_tilt_term_2
-    fp[3, 31] = accel_pan_by_K_t_tilt_term * accel_tilt_by_i_tilt_term
-    fp[7, 31] = -L_tilt_inverse * omega_tilt_ratio_tilt
-    driving_torque_tilt_by_J_motor_tilt_term = omega_tilt_sq_ratio_tilt_by_theta_tilt * ratio_tilt
-    driving_torque_tilt_by_J_motor_tilt = -driving_torque_tilt_by_J_motor_tilt_term
-    carried_tilt_by_J_motor_tilt = (
-        driving_torque_tilt_by_J_motor_tilt * load_inertia_tilt - load_torque_tilt * ratio_tilt_sq
-    )
-    lost_lowering_tilt_by_J_motor_tilt = -lost_lowering_tilt_by_theta_tilt_term * ratio_tilt_sq
-    lost_raising_tilt_by_J_motor_tilt = -lost_raising_tilt_by_theta_tilt_term * ratio_tilt_sq
-    accel_pan_by_J_motor_tilt_term = (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_motor_tilt
-        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_J_motor_tilt
-        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_J_motor_tilt
-        - accel_tilt * ratio_tilt_sq
-        - driving_torque_tilt_by_J_motor_tilt_term
-    )
-    fp[2, 32] = -accel_pan_by_J_motor_tilt_term * accel_pan_by_i_tilt_term_2
-    fp[3, 32] = accel_pan_by_J_motor_tilt_term * accel_tilt_by_i_tilt_term
-    omega_tilt_ratio_tilt_sq = omega_tilt * ratio_tilt_sq
-    driving_torque_tilt_by_b_motor_tilt = -omega_tilt_ratio_tilt_sq
-    carried_tilt_by_b_motor_tilt = driving_torque_tilt_by_b_motor_tilt * load_inertia_tilt
-    accel_pan_by_b_motor_tilt_term = (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_b_motor_tilt
-        - omega_tilt_ratio_tilt_sq
-    )
-    fp[2, 33] = -accel_pan_by_b_motor_tilt_term * accel_pan_by_i_tilt_term_2
-    fp[3, 33] = accel_pan_by_b_motor_tilt_term * accel_tilt_by_i_tilt_term
-    ratio_tilt_by_theta_tilt_by_N_tilt = (
-        -ratio_tilt_by_N_tilt_term * ratio_tilt_by_theta_tilt_term_5
-        + ratio_tilt_by_theta_tilt_term_2
-    )
-    driving_torque_tilt_by_N_tilt_term = (
-        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_N_tilt
-        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_N_tilt
-    )
-    driving_torque_tilt_by_N_tilt = -driving_torque_tilt_by_N_tilt_term
-    carried_tilt_by_N_tilt_term = 2.0 * J_motor_tilt_ratio_tilt_load_torque_tilt
-    carried_tilt_by_N_tilt = (
-        -carried_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt
-        + driving_torque_tilt_by_N_tilt * load_inertia_tilt
-    )
-    lost_lowering_tilt_by_N_tilt_term = 2.0 * lost_lowering_tilt_by_theta_tilt_term_3
-    lost_lowering_tilt_by_N_tilt = -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt
-    lost_raising_tilt_by_N_tilt_term = 2.0 * lost_raising_tilt_by_theta_tilt_term_3
-    lost_raising_tilt_by_N_tilt = -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt
-    twice_J_motor_tilt_ratio_tilt_accel_tilt = 2.0 * J_motor_tilt_ratio_tilt_accel_tilt
-    accel_pan_by_N_tilt_term = (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_N_tilt
-        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_N_tilt
-        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_N_tilt
-        - driving_torque_tilt_by_N_tilt_term
-        - ratio_tilt_by_N_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
-    )
-    fp[2, 34] = -accel_pan_by_N_tilt_term * accel_pan_by_i_tilt_term_2
-    fp[3, 34] = accel_pan_by_N_tilt_term * accel_tilt_by_i_tilt_term
-    fp[7, 34] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_N_tilt
-    ratio_tilt_by_lead_tilt_term = 1.0 / (lead_tilt * lead_tilt)
-    ratio_tilt_by_lead_tilt_term_2 = math.pi * length_tilt_inverse * ratio_tilt_by_lead_tilt_term
-    ratio_tilt_by_lead_tilt = -N_tilt_ratio_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt_term_2
-    ratio_tilt_by_theta_tilt_by_lead_tilt = (
-        math.pi
-        * N_tilt
-        * length_tilt_by_theta_tilt
-        * ratio_tilt_by_N_tilt_term
-        * ratio_tilt_by_lead_tilt_term
-        * ratio_tilt_by_theta_tilt_term_3
-        - N_tilt_ratio_tilt_by_theta_tilt_term * ratio_tilt_by_lead_tilt_term_2
-    )
-    driving_torque_tilt_by_lead_tilt_term = (
-        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_lead_tilt
-        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_lead_tilt
-    )
-    driving_torque_tilt_by_lead_tilt = -driving_torque_tilt_by_lead_tilt_term
-    carried_tilt_by_lead_tilt = (
-        -carried_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt
-        + driving_torque_tilt_by_lead_tilt * load_inertia_tilt
-    )
-    lowered_tilt_by_lead_tilt_term = lowered_tilt_term * ratio_tilt_by_lead_tilt_term
-    lowered_tilt_by_lead_tilt_term_2 = f_screw_tilt_lowered_tilt_term * lead_tilt_inverse
-    lowered_tilt_by_lead_tilt_term_3 = lowered_tilt_term_2 * lowered_tilt_term_3_inverse
-    lowered_tilt_by_lead_tilt_term_4 = 1.0 / (lowered_tilt_term_3 * lowered_tilt_term_3)
-    lowered_tilt_by_lead_tilt = (
-        lowered_tilt_by_lead_tilt_term * lowered_tilt_by_lead_tilt_term_3
-        + lowered_tilt_by_lead_tilt_term_2 * lowered_tilt_by_lead_tilt_term_4 * lowered_tilt_term_2
-        + lowered_tilt_term_lowered_tilt_term_4
-    )
-    lost_lowering_tilt_by_lead_tilt_term = (
-        -load_inertia_tilt * lost_lowering_tilt_by_theta_tilt_term - lost_lowering_tilt_term_3
-    )
-    lost_lowering_tilt_by_lead_tilt = (
-        -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt
-        + lost_lowering_tilt_by_lead_tilt_term * lowered_tilt_by_lead_tilt
-    )
-    raised_tilt_by_lead_tilt_term = raised_tilt_term * raised_tilt_term_2_inverse
-    raised_tilt_by_lead_tilt_term_2 = raised_tilt_term / (raised_tilt_term_2 * raised_tilt_term_2)
-    raised_tilt_by_lead_tilt = (
-        -lowered_tilt_by_lead_tilt_term * raised_tilt_by_lead_tilt_term
-        + lowered_tilt_by_lead_tilt_term_2 * raised_tilt_by_lead_tilt_term_2
-        + lowered_tilt_term_raised_tilt_term_3
-    )
-    lost_raising_tilt_by_lead_tilt_term = (
-        -load_inertia_tilt * lost_raising_tilt_by_theta_tilt_term + lost_raising_tilt_term_2_inverse
-    )
-    lost_raising_tilt_by_lead_tilt = (
-        -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt
-        + lost_raising_tilt_by_lead_tilt_term * raised_tilt_by_lead_tilt
-    )
-    accel_pan_by_lead_tilt_term = (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_lead_tilt
-        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_lead_tilt
-        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_lead_tilt
-        - driving_torque_tilt_by_lead_tilt_term
-        - ratio_tilt_by_lead_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
-    )
-    fp[2, 35] = -accel_pan_by_i_tilt_term_2 * accel_pan_by_lead_tilt_term
-    fp[3, 35] = accel_pan_by_lead_tilt_term * accel_tilt_by_i_tilt_term
-    fp[7, 35] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_lead_tilt
-    lowered_tilt_by_d_screw_tilt_term = math.pi * math.pi
-    lowered_tilt_by_d_screw_tilt_term_2 = d_screw_tilt * lowered_tilt_by_d_screw_tilt_term
-    lowered_tilt_by_d_screw_tilt_term_3 = f_screw_tilt * lowered_tilt_by_d_screw_tilt_term_2
-    lowered_tilt_by_d_screw_tilt = (
-        d_screw_tilt
-        * lead_tilt_inverse
-        * lowered_tilt_by_d_screw_tilt_term
-        * lowered_tilt_by_lead_tilt_term_4
-        * lowered_tilt_term_2
-        - lowered_tilt_by_d_screw_tilt_term_3 * lowered_tilt_term_4
-        - lowered_tilt_by_lead_tilt_term_3 * ratio_tilt_by_N_tilt_term_2
-    )
-    lost_lowering_tilt_by_d_screw_tilt = (
-        lost_lowering_tilt_by_lead_tilt_term * lowered_tilt_by_d_screw_tilt
-    )
-    raised_tilt_by_d_screw_tilt = (
-        -lead_tilt_inverse * lowered_tilt_by_d_screw_tilt_term_2 * raised_tilt_by_lead_tilt_term_2
-        + lowered_tilt_by_d_screw_tilt_term_3 * raised_tilt_term_3
-        + raised_tilt_by_lead_tilt_term * ratio_tilt_by_N_tilt_term_2
-    )
-    lost_raising_tilt_by_d_screw_tilt = (
-        lost_raising_tilt_by_lead_tilt_term * raised_tilt_by_d_screw_tilt
-    )
-    accel_pan_by_d_screw_tilt_term = (
-        -accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_d_screw_tilt
-        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_d_screw_tilt
-    )
-    fp[2, 36] = -accel_pan_by_d_screw_tilt_term * accel_pan_by_i_tilt_term_2
-    fp[3, 36] = accel_pan_by_d_screw_tilt_term * accel_tilt_by_i_tilt_term
-    lowered_tilt_by_f_screw_tilt_term = (
-        d_screw_tilt * d_screw_tilt
-    ) * lowered_tilt_by_d_screw_tilt_term
-    lowered_tilt_by_f_screw_tilt = (
-        math.pi * d_screw_tilt * lowered_tilt_by_lead_tilt_term_4 * lowered_tilt_term_2
-        - lowered_tilt_by_f_screw_tilt_term * lowered_tilt_term_4
-    )
-    lost_lowering_tilt_by_f_screw_tilt = (
-        lost_lowering_tilt_by_lead_tilt_term * lowered_tilt_by_f_screw_tilt
-    )
-    raised_tilt_by_f_screw_tilt = (
-        lowered_tilt_by_f_screw_tilt_term * raised_tilt_term_3
-        + lowered_tilt_term * raised_tilt_by_lead_tilt_term_2
-    )
-    lost_raising_tilt_by_f_screw_tilt = (
-        lost_raising_tilt_by_lead_tilt_term * raised_tilt_by_f_screw_tilt
-    )
-    accel_pan_by_f_screw_tilt_term = (
-        -accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_f_screw_tilt
-        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_f_screw_tilt
-    )
-    fp[2, 37] = -accel_pan_by_f_screw_tilt_term * accel_pan_by_i_tilt_term_2
-    fp[3, 37] = accel_pan_by_f_screw_tilt_term * accel_tilt_by_i_tilt_term
-    linkage_cos_tilt_by_l_ground_tilt = 2.0 * l_ground_tilt
-    linkage_sin_tilt_inverse = 1.0 / linkage_sin_tilt
-    linkage_sin_tilt_by_l_ground_tilt_term = linkage_cos_tilt * linkage_sin_tilt_inverse
-    linkage_sin_tilt_by_l_ground_tilt = (
-        l_ground_tilt * linkage_sin_tilt_inverse * linkage_sin_tilt_term
-        - linkage_cos_tilt_by_l_ground_tilt * linkage_sin_tilt_by_l_ground_tilt_term
-    )
-    half_length_tilt_inverse_2 = 0.5 * length_tilt_inverse_2
-    cos_tilt_half_length_tilt_inverse_2 = cos_tilt * half_length_tilt_inverse_2
-    half_length_tilt_inverse_2_sin_tilt = half_length_tilt_inverse_2 * sin_tilt
-    length_tilt_by_l_ground_tilt = (
-        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_l_ground_tilt
-        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_l_ground_tilt
-        + l_ground_tilt * length_tilt_inverse_2
-    )
-    ratio_tilt_by_l_ground_tilt_term = N_tilt_ratio_tilt_by_N_tilt_term_3 * cos_tilt
-    ratio_tilt_by_l_ground_tilt = (
-        math.pi
-        * N_tilt
-        * lead_tilt_inverse
-        * length_tilt_inverse
-        * linkage_cos_tilt_by_l_ground_tilt
-        * sin_tilt
-        - length_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
-        - linkage_sin_tilt_by_l_ground_tilt * ratio_tilt_by_l_ground_tilt_term
-    )
-    length_tilt_by_theta_tilt_by_l_ground_tilt_term = (
-        0.5 * length_tilt_by_theta_tilt_by_theta_tilt_term
-    )
-    length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 = (
-        cos_tilt * length_tilt_by_theta_tilt_by_l_ground_tilt_term
-        + half_length_tilt_inverse_2_sin_tilt
-    )
-    length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 = (
-        -cos_tilt_half_length_tilt_inverse_2
-        + length_tilt_by_theta_tilt_by_l_ground_tilt_term * sin_tilt
-    )
-    length_tilt_by_theta_tilt_by_l_ground_tilt = (
-        -l_ground_tilt * length_tilt_by_theta_tilt_by_theta_tilt_term
-        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_l_ground_tilt
-        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_l_ground_tilt
-    )
-    N_tilt_ratio_tilt_by_theta_tilt_term_5 = N_tilt * ratio_tilt_by_theta_tilt_term_5
-    ratio_tilt_by_theta_tilt_by_l_ground_tilt_term = (
-        N_tilt_ratio_tilt_by_N_tilt_term_3 * sin_tilt
-        + N_tilt_ratio_tilt_by_theta_tilt_term_5 * cos_tilt
-    )
-    ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2 = (
-        -N_tilt_ratio_tilt_by_theta_tilt_term_5 * sin_tilt + ratio_tilt_by_l_ground_tilt_term
-    )
-    ratio_tilt_by_theta_tilt_by_l_ground_tilt = (
-        length_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
-        - length_tilt_by_theta_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
-        + linkage_cos_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
-        + linkage_sin_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
-    )
-    driving_torque_tilt_by_l_ground_tilt_term = (
-        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_l_ground_tilt
-        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_l_ground_tilt
-    )
-    driving_torque_tilt_by_l_ground_tilt = -driving_torque_tilt_by_l_ground_tilt_term
-    carried_tilt_by_l_ground_tilt = (
-        -carried_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
-        + driving_torque_tilt_by_l_ground_tilt * load_inertia_tilt
-    )
-    lost_lowering_tilt_by_l_ground_tilt = (
-        -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
-    )
-    lost_raising_tilt_by_l_ground_tilt = (
-        -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
-    )
-    accel_pan_by_l_ground_tilt_term = (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_l_ground_tilt
-        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_l_ground_tilt
-        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_l_ground_tilt
-        - driving_torque_tilt_by_l_ground_tilt_term
-        - ratio_tilt_by_l_ground_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
-    )
-    fp[2, 38] = -accel_pan_by_i_tilt_term_2 * accel_pan_by_l_ground_tilt_term
-    fp[3, 38] = accel_pan_by_l_ground_tilt_term * accel_tilt_by_i_tilt_term
-    fp[7, 38] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_l_ground_tilt
-    linkage_cos_tilt_by_s_start_tilt = -2.0 * l_min_tilt - 2.0 * s_start_tilt
-    linkage_sin_tilt_by_l_min_tilt = (
-        -linkage_cos_tilt_by_s_start_tilt * linkage_sin_tilt_by_l_ground_tilt_term
-    )
-    length_tilt_by_l_min_tilt = (
-        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_s_start_tilt
-        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_l_min_tilt
-    )
-    ratio_tilt_by_l_min_tilt = (
-        math.pi
-        * N_tilt
-        * lead_tilt_inverse
-        * length_tilt_inverse
-        * linkage_cos_tilt_by_s_start_tilt
-        * sin_tilt
-        - length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
-        - linkage_sin_tilt_by_l_min_tilt * ratio_tilt_by_l_ground_tilt_term
-    )
-    length_tilt_by_theta_tilt_by_l_min_tilt = (
-        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_s_start_tilt
-        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_l_min_tilt
-    )
-    ratio_tilt_by_theta_tilt_by_l_min_tilt = (
-        length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
-        - length_tilt_by_theta_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
-        + linkage_cos_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
-        + linkage_sin_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
-    )
-    driving_torque_tilt_by_l_min_tilt_term = (
-        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_l_min_tilt
-        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_l_min_tilt
-    )
-    driving_torque_tilt_by_l_min_tilt = -driving_torque_tilt_by_l_min_tilt_term
-    carried_tilt_by_l_min_tilt = (
-        -carried_tilt_by_N_tilt_term * ratio_tilt_by_l_min_tilt
-        + driving_torque_tilt_by_l_min_tilt * load_inertia_tilt
-    )
-    lost_lowering_tilt_by_l_min_tilt = -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_l_min_tilt
-    lost_raising_tilt_by_l_min_tilt = -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_l_min_tilt
-    accel_pan_by_l_min_tilt_term = (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_l_min_tilt
-        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_l_min_tilt
-        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_l_min_tilt
-        - driving_torque_tilt_by_l_min_tilt_term
-        - ratio_tilt_by_l_min_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
-    )
-    fp[2, 39] = -accel_pan_by_i_tilt_term_2 * accel_pan_by_l_min_tilt_term
-    fp[3, 39] = accel_pan_by_l_min_tilt_term * accel_tilt_by_i_tilt_term
-    fp[7, 39] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_l_min_tilt
-    linkage_cos_tilt_by_r_arm_tilt = 2.0 * r_arm_tilt
-    linkage_sin_tilt_by_r_arm_tilt = (
-        4.0 * l_ground_tilt_sq * linkage_sin_tilt_inverse * r_arm_tilt
-        - linkage_cos_tilt_by_r_arm_tilt * linkage_sin_tilt_by_l_ground_tilt_term
-    )
-    length_tilt_by_r_arm_tilt = (
-        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_r_arm_tilt
-        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_r_arm_tilt
-        + length_tilt_inverse_2 * r_arm_tilt
-    )
-    ratio_tilt_by_r_arm_tilt = (
-        math.pi
-        * N_tilt
-        * lead_tilt_inverse
-        * length_tilt_inverse
-        * linkage_cos_tilt_by_r_arm_tilt
-        * sin_tilt
-        - length_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
-        - linkage_sin_tilt_by_r_arm_tilt * ratio_tilt_by_l_ground_tilt_term
-    )
-    length_tilt_by_theta_tilt_by_r_arm_tilt = (
-        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_r_arm_tilt
-        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_r_arm_tilt
-        - length_tilt_by_theta_tilt_by_theta_tilt_term * r_arm_tilt
-    )
-    ratio_tilt_by_theta_tilt_by_r_arm_tilt = (
-        length_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
-        - length_tilt_by_theta_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
-        + linkage_cos_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
-        + linkage_sin_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
-    )
-    driving_torque_tilt_by_r_arm_tilt_term = (
-        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_r_arm_tilt
-        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_r_arm_tilt
-    )
-    driving_torque_tilt_by_r_arm_tilt = -driving_torque_tilt_by_r_arm_tilt_term
-    carried_tilt_by_r_arm_tilt = (
-        -carried_tilt_by_N_tilt_term * ratio_tilt_by_r_arm_tilt
-        + driving_torque_tilt_by_r_arm_tilt * load_inertia_tilt
-    )
-    lost_lowering_tilt_by_r_arm_tilt = -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_r_arm_tilt
-    lost_raising_tilt_by_r_arm_tilt = -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_r_arm_tilt
-    accel_pan_by_r_arm_tilt_term = (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_r_arm_tilt
-        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_r_arm_tilt
-        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_r_arm_tilt
-        - driving_torque_tilt_by_r_arm_tilt_term
-        - ratio_tilt_by_r_arm_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
-    )
-    fp[2, 40] = -accel_pan_by_i_tilt_term_2 * accel_pan_by_r_arm_tilt_term
-    fp[3, 40] = accel_pan_by_r_arm_tilt_term * accel_tilt_by_i_tilt_term
-    fp[7, 40] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_r_arm_tilt
-    linkage_sin_tilt_by_s_start_tilt = (
-        -linkage_cos_tilt_by_s_start_tilt * linkage_sin_tilt_by_l_ground_tilt_term
-    )
-    length_tilt_by_s_start_tilt = (
-        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_s_start_tilt
-        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_s_start_tilt
-    )
-    ratio_tilt_by_s_start_tilt = (
-        math.pi
-        * N_tilt
-        * lead_tilt_inverse
-        * length_tilt_inverse
-        * linkage_cos_tilt_by_s_start_tilt
-        * sin_tilt
-        - length_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
-        - linkage_sin_tilt_by_s_start_tilt * ratio_tilt_by_l_ground_tilt_term
-    )
-    length_tilt_by_theta_tilt_by_s_start_tilt = (
-        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_s_start_tilt
-        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_s_start_tilt
-    )
-    ratio_tilt_by_theta_tilt_by_s_start_tilt = (
-        length_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
-        - length_tilt_by_theta_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
-        + linkage_cos_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
-        + linkage_sin_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
-    )
-    driving_torque_tilt_by_s_start_tilt_term = (
-        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_s_start_tilt
-        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_s_start_tilt
-    )
-    driving_torque_tilt_by_s_start_tilt = -driving_torque_tilt_by_s_start_tilt_term
-    carried_tilt_by_s_start_tilt = (
-        -carried_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
-        + driving_torque_tilt_by_s_start_tilt * load_inertia_tilt
-    )
-    lost_lowering_tilt_by_s_start_tilt = (
-        -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
-    )
-    lost_raising_tilt_by_s_start_tilt = (
-        -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
-    )
-    accel_pan_by_s_start_tilt_term = (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_s_start_tilt
-        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_s_start_tilt
-        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_s_start_tilt
-        - driving_torque_tilt_by_s_start_tilt_term
-        - ratio_tilt_by_s_start_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
-    )
-    fp[2, 41] = -accel_pan_by_i_tilt_term_2 * accel_pan_by_s_start_tilt_term
-    fp[3, 41] = accel_pan_by_s_start_tilt_term * accel_tilt_by_i_tilt_term
-    fp[7, 41] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_s_start_tilt
-    load_torque_tilt_by_gravity = (
-        cos_tilt * gravity_cos_tilt_by_gravity + gravity_sin_tilt_by_gravity * sin_tilt
-    )
-    carried_tilt_by_gravity = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_gravity
-    accel_pan_by_gravity_term = (
-        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_gravity
-        + load_torque_tilt_by_gravity
-    )
-    fp[2, 43] = -accel_pan_by_gravity_term * accel_pan_by_i_tilt_term_2
-    fp[3, 43] = accel_pan_by_gravity_term * accel_tilt_by_i_tilt_term
+    prepared_derivative(t, x, u, p, m, constants(p), dx)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def guards(t, x, u, p, m, g):
     """Write holding and breakaway torques, gap separations and contact torques into g.
 
     t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
-    see MODE_NAMES; g [10] in N m and rad.
+      see MODE_NAMES; g [10] in N m and rad.
+    g: holding_pan, forward_pan, backward_pan, holding_tilt, forward_tilt, backward_tilt,
+      separation_pan, half_gap_pan, upper_pan, lower_pan.
     """
-    theta_pan = x[0]
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    theta_gear_pan = x[4]
-    omega_gear_pan = x[5]
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    shaft_torque_pan_term, theta_pan_minus_theta_gear_pan = forces[3], forces[4]
+    shaft_torque_pan, force_pan, mass_pan = forces[7], forces[8], forces[9]
+    mass_pan_tilt, mass_pan_tilt_sq, load_torque_tilt = forces[10], forces[11], forces[15]
+    force_tilt_term_2, force_tilt, mass_tilt = forces[17], forces[18], forces[19]
     i_pan = x[6]
-    i_tilt = x[7]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    b_pan = p[11]
-    b_tilt = p[12]
-    F_s_pan = p[14]
-    a_F_s_pan = p[18]
-    gap_pan = p[21]
-    k_shaft_pan = p[22]
-    d_shaft_pan = p[23]
-    K_t_pan = p[26]
-    N_pan = p[28]
-    K_t_tilt = p[31]
-    J_motor_tilt = p[32]
-    b_motor_tilt = p[33]
-    N_tilt = p[34]
-    lead_tilt = p[35]
-    d_screw_tilt = p[36]
-    f_screw_tilt = p[37]
-    l_ground_tilt = p[38]
-    l_min_tilt = p[39]
-    r_arm_tilt = p[40]
-    s_start_tilt = p[41]
-    gravity = p[43]
+    F_s_pan, a_F_s_pan, k_shaft_pan = p[14], p[18], p[22]
     slide_tilt = m[1]
-    side_pan = m[2]
-    active_pan = m[3]
-    shaft_torque_pan_term = omega_gear_pan - omega_pan
-    d_shaft_pan_shaft_torque_pan_term = d_shaft_pan * shaft_torque_pan_term
-    half_gap_pan = 0.5 * gap_pan
-    shaft_torque_pan_term_2 = -theta_gear_pan + theta_pan
-    shaft_torque_pan_term_3 = -half_gap_pan * side_pan - shaft_torque_pan_term_2
-    shaft_torque_pan = active_pan * (
-        d_shaft_pan_shaft_torque_pan_term + k_shaft_pan * shaft_torque_pan_term_3
-    )
-    minus_shaft_torque_pan = -shaft_torque_pan
-    g[0] = K_t_pan * N_pan * i_pan + minus_shaft_torque_pan
-    g[1] = F_s_pan * (a_F_s_pan + 1.0)
-    g[2] = F_s_pan * (1.0 - a_F_s_pan)
-    inertia_pan_sin_cos_tilt = 2.0 * c_x_payload * c_z_payload * m_payload
-    inertia_pan_sin_sq_tilt_term = (c_x_payload * c_x_payload) * m_payload
-    inertia_pan_sin_sq_tilt_term_2 = (c_z_payload * c_z_payload) * m_payload
-    inertia_pan_sin_sq_tilt = (
-        J_x_payload
-        + J_x_tilt
-        - J_z_payload
-        - J_z_tilt
-        - inertia_pan_sin_sq_tilt_term
-        + inertia_pan_sin_sq_tilt_term_2
-    )
-    cos_tilt = math.cos(theta_tilt)
-    sin_tilt = math.sin(theta_tilt)
-    inertia_pan_per_sin_tilt = (
-        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
-    )
-    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
-    c_y_payload_m_payload = c_y_payload * m_payload
-    coupling_cos_tilt = c_y_payload_m_payload * c_z_payload
-    coupling_sin_tilt = c_x_payload * c_y_payload_m_payload
-    force_pan = (
-        -b_pan * omega_pan
-        - minus_shaft_torque_pan
-        - omega_tilt
-        * (coriolis + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt))
-    )
-    inertia_tilt = (
-        J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term + inertia_pan_sin_sq_tilt_term_2
-    )
-    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
-    inertia_pan = (
-        J_pan
-        + J_z_payload
-        + J_z_tilt
-        + (c_y_payload * c_y_payload) * m_payload
-        + inertia_pan_sin_sq_tilt_term
-    )
-    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
-    mass_pan_inverse = 1.0 / mass_pan
-    load_inertia_tilt = inertia_tilt - mass_pan_inverse * (mass_pan_tilt * mass_pan_tilt)
-    lowered_tilt_term = math.pi * d_screw_tilt
-    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
-    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
-    lead_tilt_inverse = 1.0 / lead_tilt
-    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
-    lowered_tilt = (
-        -lead_tilt_inverse_lowered_tilt_term
-        * (f_screw_tilt_lowered_tilt_term - lead_tilt)
-        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
-    )
-    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
-    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
-    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
-    linkage_cos_tilt = l_ground_tilt_sq_plus_r_arm_tilt_sq - (
-        (l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)
-    )
-    linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
-    linkage_sin_tilt = math.sqrt(
-        4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt * linkage_cos_tilt)
-    )
-    cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
-    ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
-    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
-    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt = math.sqrt(
-        -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
-    )
-    ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
-    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
-    lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
-    lost_lowering_tilt = (1.0 - lowered_tilt) / (
-        abs(load_inertia_tilt * lowered_tilt + lost_lowering_tilt_term)
-    )
-    raised_tilt = (
-        lead_tilt_inverse_lowered_tilt_term
-        * (f_screw_tilt_lowered_tilt_term + lead_tilt)
-        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
-    )
-    lost_raising_tilt = (raised_tilt - 1.0) / (
-        load_inertia_tilt * raised_tilt + lost_lowering_tilt_term
-    )
-    length_tilt_by_theta_tilt = (
-        -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
-    ) / length_tilt
-    ratio_tilt_by_theta_tilt = (
-        -math.pi
-        * N_tilt
-        * lead_tilt_inverse
-        * length_tilt_by_theta_tilt
-        * ratio_tilt_term
-        / (length_tilt * length_tilt)
-        + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
-    )
-    driving_torque_tilt_term = (
-        J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt * ratio_tilt_by_theta_tilt
-    )
-    driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt * ratio_tilt
-    driving_torque_tilt = -driving_torque_tilt_term + driving_torque_tilt_term_2 * ratio_tilt
-    gravity_m_payload = gravity * m_payload
-    gravity_cos_tilt = c_x_payload * gravity_m_payload
-    gravity_sin_tilt = c_z_payload * gravity_m_payload
-    load_torque_tilt_term = (
-        -b_tilt * omega_tilt
-        + 0.5 * coriolis * omega_pan
-        + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt
-    )
-    load_torque_tilt = -force_pan * mass_pan_inverse * mass_pan_tilt + load_torque_tilt_term
-    carried_tilt = (
-        driving_torque_tilt * load_inertia_tilt - load_torque_tilt * lost_lowering_tilt_term
-    )
-    carried_tilt_slide_tilt = carried_tilt * slide_tilt
-    transmitted_torque_tilt = driving_torque_tilt_term_2 * ratio_tilt
-    force_tilt_term = -driving_torque_tilt_term + load_torque_tilt_term + transmitted_torque_tilt
-    force_tilt = force_tilt_term - slide_tilt * (
-        0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
-        + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
-    )
-    mass_tilt = inertia_tilt + lost_lowering_tilt_term
+    half_gap_pan, lowered_tilt, raised_tilt, K_t_pan_N_pan = c[4], c[8], c[12], c[17]
+    raised_tilt_minus_lowered_tilt = c[18]
     slide_tilt_sq = slide_tilt * slide_tilt
-    inverse_determinant = 1.0 / (
-        mass_pan * mass_tilt - (mass_pan_tilt * mass_pan_tilt) * slide_tilt_sq
-    )
-    mass_pan_tilt_slide_tilt_sq = mass_pan_tilt * slide_tilt_sq
-    accel_pan = inverse_determinant * (
-        force_pan * mass_tilt - force_tilt * mass_pan_tilt_slide_tilt_sq
-    )
-    g[3] = -accel_pan * mass_pan_tilt + force_tilt_term
+    inverse_determinant = 1.0 / (mass_pan * mass_tilt - mass_pan_tilt_sq * slide_tilt_sq)
+    accel_pan = (inverse_determinant * (force_pan * mass_tilt
+        - force_tilt * mass_pan_tilt * slide_tilt_sq))
+    g[0] = K_t_pan_N_pan * i_pan - shaft_torque_pan  # holding_pan
+    g[1] = F_s_pan * (a_F_s_pan + 1.0)  # forward_pan
+    g[2] = F_s_pan * (1.0 - a_F_s_pan)  # backward_pan
+    g[3] = -accel_pan * mass_pan_tilt + force_tilt_term_2  # holding_tilt
     forward_tilt_term = 0.5 * load_torque_tilt * (lowered_tilt + raised_tilt - 2.0)
-    forward_tilt_term_2 = abs(load_torque_tilt)
-    forward_tilt_term_3 = -lowered_tilt + raised_tilt
-    g[4] = -forward_tilt_term + 0.5 * forward_tilt_term_2 * forward_tilt_term_3
-    g[5] = forward_tilt_term + 0.5 * forward_tilt_term_2 * forward_tilt_term_3
-    separation_pan_term = theta_gear_pan - theta_pan
-    g[6] = separation_pan_term
+    abs_load_torque_tilt = abs(load_torque_tilt)
+    # forward_tilt
+    g[4] = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt - forward_tilt_term
+    # backward_tilt
+    g[5] = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt + forward_tilt_term
+    g[6] = -theta_pan_minus_theta_gear_pan  # separation_pan
     g[7] = half_gap_pan
-    g[8] = d_shaft_pan_shaft_torque_pan_term + k_shaft_pan * (
-        -half_gap_pan - shaft_torque_pan_term_2
-    )
-    g[9] = d_shaft_pan_shaft_torque_pan_term + k_shaft_pan * (half_gap_pan + separation_pan_term)
+    # upper_pan
+    g[8] = k_shaft_pan * (-half_gap_pan - theta_pan_minus_theta_gear_pan) + shaft_torque_pan_term
+    # lower_pan
+    g[9] = k_shaft_pan * (half_gap_pan - theta_pan_minus_theta_gear_pan) + shaft_torque_pan_term
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def guard_jacobian(t, x, u, p, m, gx, gp):
-    """Write the non-zero derivatives of guards by state and parameter.
-
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
-    see MODE_NAMES; gx [10, 8]; gp [10, 44].
-    """
-    theta_pan = x[0]
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    theta_gear_pan = x[4]
-    omega_gear_pan = x[5]
-    i_pan = x[6]
-    i_tilt = x[7]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    b_pan = p[11]
-    b_tilt = p[12]
-    F_s_pan = p[14]
-    a_F_s_pan = p[18]
-    gap_pan = p[21]
-    k_shaft_pan = p[22]
-    d_shaft_pan = p[23]
-    K_t_pan = p[26]
-    N_pan = p[28]
-    K_t_tilt = p[31]
-    J_motor_tilt = p[32]
-    b_motor_tilt = p[33]
-    N_tilt = p[34]
-    lead_tilt = p[35]
-    d_screw_tilt = p[36]
-    f_screw_tilt = p[37]
-    l_ground_tilt = p[38]
-    l_min_tilt = p[39]
-    r_arm_tilt = p[40]
-    s_start_tilt = p[41]
-    gravity = p[43]
-    slide_tilt = m[1]
-    side_pan = m[2]
-    active_pan = m[3]
-    follower_torque_tilt_by_theta_gear_pan = active_pan * k_shaft_pan
-    gx[0, 0] = follower_torque_tilt_by_theta_gear_pan
-    follower_torque_tilt_by_theta_pan = -follower_torque_tilt_by_theta_gear_pan
-    coupling_cos_tilt_by_c_z_payload = c_y_payload * m_payload
-    coupling_cos_tilt = c_z_payload * coupling_cos_tilt_by_c_z_payload
-    coupling_sin_tilt_by_m_payload = c_x_payload * c_y_payload
-    coupling_sin_tilt = coupling_sin_tilt_by_m_payload * m_payload
-    cos_tilt = math.cos(theta_tilt)
-    sin_tilt = math.sin(theta_tilt)
-    mass_pan_tilt_term = cos_tilt * coupling_cos_tilt - coupling_sin_tilt * sin_tilt
-    mass_pan_tilt = -mass_pan_tilt_term
-    c_x_payload_sq = c_x_payload * c_x_payload
-    c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
-    c_y_payload_sq = c_y_payload * c_y_payload
-    inertia_pan = (
-        J_pan + J_z_payload + J_z_tilt + c_x_payload_sq_m_payload + c_y_payload_sq * m_payload
-    )
-    gravity_cos_tilt_by_gravity = c_x_payload * m_payload
-    inertia_tilt_by_c_x_payload = 2.0 * gravity_cos_tilt_by_gravity
-    inertia_pan_sin_cos_tilt = c_z_payload * inertia_tilt_by_c_x_payload
-    c_z_payload_sq = c_z_payload * c_z_payload
-    c_z_payload_sq_m_payload = c_z_payload_sq * m_payload
-    inertia_pan_sin_sq_tilt = (
-        J_x_payload
-        + J_x_tilt
-        - J_z_payload
-        - J_z_tilt
-        - c_x_payload_sq_m_payload
-        + c_z_payload_sq_m_payload
-    )
-    inertia_pan_per_sin_tilt = (
-        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
-    )
-    inertia_pan_per_sin_tilt_sin_tilt = inertia_pan_per_sin_tilt * sin_tilt
-    mass_pan = inertia_pan + inertia_pan_per_sin_tilt_sin_tilt
-    mass_pan_inverse = 1.0 / mass_pan
-    mass_pan_inverse_mass_pan_tilt = mass_pan_inverse * mass_pan_tilt
-    load_torque_tilt_by_theta_pan = (
-        -follower_torque_tilt_by_theta_pan * mass_pan_inverse_mass_pan_tilt
-    )
-    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
-    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
-    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
-    linkage_cos_tilt = l_ground_tilt_sq_plus_r_arm_tilt_sq - (
-        (l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)
-    )
-    linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
-    linkage_sin_tilt_term = 4.0 * r_arm_tilt_sq
-    linkage_sin_tilt = math.sqrt(
-        l_ground_tilt_sq * linkage_sin_tilt_term - (linkage_cos_tilt * linkage_cos_tilt)
-    )
-    cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
-    ratio_tilt_by_N_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
-    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
-    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt_term = (
-        -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
-    )
-    length_tilt = math.sqrt(length_tilt_term)
-    length_tilt_inverse = 1.0 / length_tilt
-    lead_tilt_inverse = 1.0 / lead_tilt
-    ratio_tilt_by_N_tilt_term_2 = math.pi * lead_tilt_inverse
-    ratio_tilt_by_N_tilt_term_3 = length_tilt_inverse * ratio_tilt_by_N_tilt_term_2
-    ratio_tilt_by_N_tilt = ratio_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt_term_3
-    ratio_tilt = N_tilt * ratio_tilt_by_N_tilt
-    ratio_tilt_sq = ratio_tilt * ratio_tilt
-    J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
-    carried_tilt_by_theta_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_pan
-    inertia_tilt = J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
-    mass_tilt = J_motor_tilt_ratio_tilt_sq + inertia_tilt
-    holding_tilt_by_theta_pan_term = follower_torque_tilt_by_theta_gear_pan * mass_tilt
-    lowered_tilt_term = math.pi * d_screw_tilt
-    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
-    lowered_tilt_term_2 = f_screw_tilt_lowered_tilt_term - lead_tilt
-    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
-    lowered_tilt_term_3 = f_screw_tilt_lead_tilt + lowered_tilt_term
-    lowered_tilt_term_3_inverse = 1.0 / lowered_tilt_term_3
-    lowered_tilt_term_4 = lead_tilt_inverse * lowered_tilt_term_3_inverse
-    lowered_tilt_term_lowered_tilt_term_4 = lowered_tilt_term * lowered_tilt_term_4
-    lowered_tilt = -lowered_tilt_term_2 * lowered_tilt_term_lowered_tilt_term_4
-    lost_lowering_tilt_term = 1.0 - lowered_tilt
-    mass_pan_tilt_sq = mass_pan_tilt * mass_pan_tilt
-    load_inertia_tilt = inertia_tilt - mass_pan_inverse * mass_pan_tilt_sq
-    lost_lowering_tilt_term_2 = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt
-    lost_lowering_tilt_term_3 = 1.0 / (abs(lost_lowering_tilt_term_2))
-    lost_lowering_tilt = lost_lowering_tilt_term * lost_lowering_tilt_term_3
-    raised_tilt_term = f_screw_tilt_lowered_tilt_term + lead_tilt
-    raised_tilt_term_2 = -f_screw_tilt_lead_tilt + lowered_tilt_term
-    raised_tilt_term_2_inverse = 1.0 / raised_tilt_term_2
-    raised_tilt_term_3 = lead_tilt_inverse * raised_tilt_term_2_inverse
-    lowered_tilt_term_raised_tilt_term_3 = lowered_tilt_term * raised_tilt_term_3
-    raised_tilt = lowered_tilt_term_raised_tilt_term_3 * raised_tilt_term
-    lost_raising_tilt_term = raised_tilt - 1.0
-    lost_raising_tilt_term_2 = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * raised_tilt
-    lost_raising_tilt_term_2_inverse = 1.0 / lost_raising_tilt_term_2
-    lost_raising_tilt = lost_raising_tilt_term * lost_raising_tilt_term_2_inverse
-    holding_tilt_by_theta_pan_term_2 = lost_lowering_tilt + lost_raising_tilt
-    ratio_tilt_by_theta_tilt_term = cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt
-    ratio_tilt_by_theta_tilt_term_2 = ratio_tilt_by_N_tilt_term_3 * ratio_tilt_by_theta_tilt_term
-    N_tilt_ratio_tilt_by_N_tilt_term = N_tilt * ratio_tilt_by_N_tilt_term
-    length_tilt_by_theta_tilt_term = (
-        -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
-    )
-    length_tilt_inverse_2 = 1.0 / length_tilt
-    length_tilt_by_theta_tilt = length_tilt_by_theta_tilt_term * length_tilt_inverse_2
-    ratio_tilt_by_theta_tilt_term_3 = 1.0 / (length_tilt * length_tilt)
-    ratio_tilt_by_theta_tilt_term_4 = ratio_tilt_by_N_tilt_term_2 * ratio_tilt_by_theta_tilt_term_3
-    ratio_tilt_by_theta_tilt_term_5 = length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_term_4
-    ratio_tilt_by_theta_tilt = (
-        N_tilt * ratio_tilt_by_theta_tilt_term_2
-        - N_tilt_ratio_tilt_by_N_tilt_term * ratio_tilt_by_theta_tilt_term_5
-    )
-    omega_tilt_sq = omega_tilt * omega_tilt
-    omega_tilt_sq_ratio_tilt_by_theta_tilt = omega_tilt_sq * ratio_tilt_by_theta_tilt
-    driving_torque_tilt_term = J_motor_tilt * omega_tilt_sq_ratio_tilt_by_theta_tilt
-    driving_torque_tilt_term_ratio_tilt = driving_torque_tilt_term * ratio_tilt
-    omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
-    b_motor_tilt_omega_tilt_ratio_tilt = b_motor_tilt * omega_tilt_ratio_tilt
-    driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt_omega_tilt_ratio_tilt
-    driving_torque_tilt = (
-        driving_torque_tilt_term_2 * ratio_tilt - driving_torque_tilt_term_ratio_tilt
-    )
-    cos_tilt_inertia_pan_per_sin_tilt = cos_tilt * inertia_pan_per_sin_tilt
-    coriolis_by_omega_pan = 2.0 * cos_tilt_inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt
-    coriolis = coriolis_by_omega_pan * omega_pan
-    follower_torque_tilt_by_b_pan = -omega_pan
-    shaft_torque_pan_term = follower_torque_tilt_by_b_pan + omega_gear_pan
-    half_gap_pan = 0.5 * gap_pan
-    shaft_torque_pan_term_2 = -theta_gear_pan + theta_pan
-    shaft_torque_pan_term_3 = -half_gap_pan * side_pan - shaft_torque_pan_term_2
-    shaft_torque_pan = active_pan * (
-        d_shaft_pan * shaft_torque_pan_term + k_shaft_pan * shaft_torque_pan_term_3
-    )
-    follower_coupling_tilt_by_theta_tilt = (
-        cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt
-    )
-    force_pan_term = follower_coupling_tilt_by_theta_tilt * omega_tilt
-    force_pan = -b_pan * omega_pan - omega_tilt * (coriolis + force_pan_term) + shaft_torque_pan
-    gravity_cos_tilt = gravity * gravity_cos_tilt_by_gravity
-    gravity_sin_tilt_by_gravity = c_z_payload * m_payload
-    gravity_sin_tilt = gravity * gravity_sin_tilt_by_gravity
-    half_coriolis = 0.5 * coriolis
-    load_torque_tilt_term = (
-        -b_tilt * omega_tilt
-        + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt
-        + half_coriolis * omega_pan
-    )
-    load_torque_tilt = -force_pan * mass_pan_inverse_mass_pan_tilt + load_torque_tilt_term
-    carried_tilt = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt + driving_torque_tilt * load_inertia_tilt
-    )
-    carried_tilt_slide_tilt = carried_tilt * slide_tilt
-    holding_tilt_by_theta_pan_term_3 = -0.5 * lost_lowering_tilt + 0.5 * lost_raising_tilt
-    holding_tilt_by_theta_pan_term_4 = (
-        0.5
-        * holding_tilt_by_theta_pan_term_2
-        * slide_tilt
-        * (0.0 if carried_tilt_slide_tilt == 0 else math.copysign(1, carried_tilt_slide_tilt))
-        + holding_tilt_by_theta_pan_term_3 * slide_tilt
-    )
-    slide_tilt_sq = slide_tilt * slide_tilt
-    inverse_determinant_term = (mass_pan_tilt * mass_pan_tilt) * slide_tilt_sq
-    inverse_determinant = 1.0 / (-inverse_determinant_term + mass_pan * mass_tilt)
-    inverse_determinant_mass_pan_tilt = inverse_determinant * mass_pan_tilt
-    gx[3, 0] = -inverse_determinant_mass_pan_tilt * (
-        carried_tilt_by_theta_pan * holding_tilt_by_theta_pan_term_4 * mass_pan_tilt * slide_tilt
-        - holding_tilt_by_theta_pan_term
-    )
-    forward_tilt_by_theta_pan_term = (
-        0.0 if load_torque_tilt == 0 else math.copysign(1, load_torque_tilt)
-    )
-    forward_tilt_by_theta_pan_term_2 = -lowered_tilt + raised_tilt
-    forward_tilt_by_theta_pan_term_3 = 0.5 * lowered_tilt + 0.5 * raised_tilt - 1.0
-    forward_tilt_by_theta_pan_term_4 = (
-        0.5 * forward_tilt_by_theta_pan_term * forward_tilt_by_theta_pan_term_2
-        - forward_tilt_by_theta_pan_term_3
-    )
-    gx[4, 0] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_theta_pan
-    backward_tilt_by_theta_pan_term = (
-        0.5 * forward_tilt_by_theta_pan_term * forward_tilt_by_theta_pan_term_2
-        + forward_tilt_by_theta_pan_term_3
-    )
-    gx[5, 0] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_theta_pan
-    gx[6, 0] = -1.0
-    minus_k_shaft_pan = -k_shaft_pan
-    gx[8, 0] = minus_k_shaft_pan
-    gx[9, 0] = minus_k_shaft_pan
-    force_tilt_term = abs(carried_tilt_slide_tilt)
-    half_force_tilt_term = 0.5 * force_tilt_term
-    transmitted_torque_tilt = driving_torque_tilt_term_2 * ratio_tilt
-    force_tilt = (
-        -driving_torque_tilt_term_ratio_tilt
-        + load_torque_tilt_term
-        - slide_tilt
-        * (
-            carried_tilt_slide_tilt * holding_tilt_by_theta_pan_term_3
-            + half_force_tilt_term * holding_tilt_by_theta_pan_term_2
-        )
-        + transmitted_torque_tilt
-    )
-    mass_pan_tilt_slide_tilt_sq = mass_pan_tilt * slide_tilt_sq
-    accel_pan = inverse_determinant * (
-        force_pan * mass_tilt - force_tilt * mass_pan_tilt_slide_tilt_sq
-    )
-    accel_tilt = (
-        inverse_determinant
-        * slide_tilt_sq
-        * (-force_pan * mass_pan_tilt_slide_tilt_sq + force_tilt * mass_pan)
-    )
-    length_tilt_by_theta_tilt_by_theta_tilt_term = (
-        length_tilt_by_theta_tilt_term * length_tilt_term ** (-1.5)
-    )
-    length_tilt_by_theta_tilt_by_theta_tilt = (
-        -length_tilt_by_theta_tilt_by_theta_tilt_term * length_tilt_by_theta_tilt_term
-        + length_tilt_inverse_2
-        * (0.5 * cos_tilt_linkage_cos_tilt + 0.5 * linkage_sin_tilt_sin_tilt)
-    )
-    N_tilt_ratio_tilt_by_N_tilt_term_3 = N_tilt * ratio_tilt_by_N_tilt_term_3
-    ratio_tilt_by_theta_tilt_by_theta_tilt_term = (
-        N_tilt_ratio_tilt_by_N_tilt_term * ratio_tilt_by_theta_tilt_term_4
-    )
-    N_tilt_ratio_tilt_by_theta_tilt_term = N_tilt * ratio_tilt_by_theta_tilt_term
-    ratio_tilt_by_theta_tilt_by_theta_tilt_term_2 = (
-        N_tilt_ratio_tilt_by_theta_tilt_term * ratio_tilt_by_theta_tilt_term_4
-    )
-    ratio_tilt_by_theta_tilt_by_theta_tilt_term_3 = (
-        2.0
-        * math.pi
-        * N_tilt
-        * lead_tilt_inverse
-        * length_tilt_by_theta_tilt
-        * ratio_tilt_by_N_tilt_term
-        / (length_tilt * length_tilt * length_tilt)
-        - ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
-    )
-    ratio_tilt_by_theta_tilt_by_theta_tilt = (
-        -N_tilt_ratio_tilt_by_N_tilt_term_3 * ratio_tilt_by_N_tilt_term
-        - length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
-        + length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
-        - length_tilt_by_theta_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
-    )
-    J_motor_tilt_ratio_tilt = J_motor_tilt * ratio_tilt
-    J_motor_tilt_ratio_tilt_omega_tilt_sq = J_motor_tilt_ratio_tilt * omega_tilt_sq
-    driving_torque_tilt_by_theta_tilt_term = (
-        K_t_tilt * i_tilt - 2.0 * b_motor_tilt_omega_tilt_ratio_tilt - driving_torque_tilt_term
-    )
-    driving_torque_tilt_by_theta_tilt_term_2 = (
-        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_theta_tilt
-        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_theta_tilt
-    )
-    driving_torque_tilt_by_theta_tilt = -driving_torque_tilt_by_theta_tilt_term_2
-    inertia_pan_per_sin_tilt_by_theta_tilt = (
-        cos_tilt * inertia_pan_sin_sq_tilt - inertia_pan_sin_cos_tilt * sin_tilt
-    )
-    follower_inertia_tilt_by_theta_tilt = (
-        cos_tilt_inertia_pan_per_sin_tilt + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt
-    )
-    twice_mass_pan_inverse_mass_pan_tilt = 2.0 * mass_pan_inverse_mass_pan_tilt
-    load_inertia_tilt_by_theta_tilt_term = 1.0 / (mass_pan * mass_pan)
-    load_inertia_tilt_by_theta_tilt_term_2 = load_inertia_tilt_by_theta_tilt_term * mass_pan_tilt_sq
-    load_inertia_tilt_by_theta_tilt = (
-        -follower_coupling_tilt_by_theta_tilt * twice_mass_pan_inverse_mass_pan_tilt
-        + follower_inertia_tilt_by_theta_tilt * load_inertia_tilt_by_theta_tilt_term_2
-    )
-    twice_omega_pan = 2.0 * omega_pan
-    coriolis_by_theta_tilt = (
-        2.0 * cos_tilt * inertia_pan_per_sin_tilt_by_theta_tilt * omega_pan
-        - inertia_pan_per_sin_tilt_sin_tilt * twice_omega_pan
-    )
-    follower_torque_tilt_by_theta_tilt_term = (
-        coriolis_by_theta_tilt * omega_tilt + mass_pan_tilt_term * omega_tilt_sq
-    )
-    follower_torque_tilt_by_theta_tilt = -follower_torque_tilt_by_theta_tilt_term
-    half_omega_pan = 0.5 * omega_pan
-    gravity_cos_tilt_sin_tilt = gravity_cos_tilt * sin_tilt
-    force_pan_mass_pan_inverse = force_pan * mass_pan_inverse
-    load_torque_tilt_by_theta_tilt_term = (
-        force_pan * load_inertia_tilt_by_theta_tilt_term * mass_pan_tilt
-    )
-    load_torque_tilt_by_theta_tilt = (
-        coriolis_by_theta_tilt * half_omega_pan
-        + cos_tilt * gravity_sin_tilt
-        - follower_coupling_tilt_by_theta_tilt * force_pan_mass_pan_inverse
-        + follower_inertia_tilt_by_theta_tilt * load_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_theta_tilt * mass_pan_inverse_mass_pan_tilt
-        - gravity_cos_tilt_sin_tilt
-    )
-    twice_ratio_tilt_by_theta_tilt = 2.0 * ratio_tilt_by_theta_tilt
-    J_motor_tilt_ratio_tilt_load_torque_tilt = J_motor_tilt_ratio_tilt * load_torque_tilt
-    carried_tilt_by_theta_tilt = (
-        -J_motor_tilt_ratio_tilt_load_torque_tilt * twice_ratio_tilt_by_theta_tilt
-        - J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_tilt
-        + driving_torque_tilt * load_inertia_tilt_by_theta_tilt
-        + driving_torque_tilt_by_theta_tilt * load_inertia_tilt
-    )
-    lost_lowering_tilt_by_theta_tilt_term = (
-        lost_lowering_tilt_term
-        * (0.0 if lost_lowering_tilt_term_2 == 0 else math.copysign(1, lost_lowering_tilt_term_2))
-        / (lost_lowering_tilt_term_2 * lost_lowering_tilt_term_2)
-    )
-    lost_lowering_tilt_by_theta_tilt_term_2 = lost_lowering_tilt_by_theta_tilt_term * lowered_tilt
-    lost_lowering_tilt_by_theta_tilt_term_3 = (
-        J_motor_tilt_ratio_tilt * lost_lowering_tilt_by_theta_tilt_term
-    )
-    lost_lowering_tilt_by_theta_tilt = (
-        -load_inertia_tilt_by_theta_tilt * lost_lowering_tilt_by_theta_tilt_term_2
-        - lost_lowering_tilt_by_theta_tilt_term_3 * twice_ratio_tilt_by_theta_tilt
-    )
-    lost_raising_tilt_by_theta_tilt_term = lost_raising_tilt_term / (
-        lost_raising_tilt_term_2 * lost_raising_tilt_term_2
-    )
-    lost_raising_tilt_by_theta_tilt_term_2 = lost_raising_tilt_by_theta_tilt_term * raised_tilt
-    lost_raising_tilt_by_theta_tilt_term_3 = (
-        J_motor_tilt_ratio_tilt * lost_raising_tilt_by_theta_tilt_term
-    )
-    lost_raising_tilt_by_theta_tilt = (
-        -load_inertia_tilt_by_theta_tilt * lost_raising_tilt_by_theta_tilt_term_2
-        - lost_raising_tilt_by_theta_tilt_term_3 * twice_ratio_tilt_by_theta_tilt
-    )
-    holding_tilt_by_theta_tilt_term = holding_tilt_by_theta_pan_term_4 * slide_tilt
-    half_carried_tilt_slide_tilt = 0.5 * carried_tilt_slide_tilt
-    holding_tilt_by_theta_tilt_term_2 = slide_tilt * (
-        0.5 * force_tilt_term - half_carried_tilt_slide_tilt
-    )
-    holding_tilt_by_theta_tilt_term_3 = slide_tilt * (
-        half_carried_tilt_slide_tilt + half_force_tilt_term
-    )
-    J_motor_tilt_ratio_tilt_accel_tilt = J_motor_tilt_ratio_tilt * accel_tilt
-    holding_tilt_by_theta_tilt_term_4 = (
-        accel_pan * follower_coupling_tilt_by_theta_tilt
-        - 0.5 * coriolis_by_theta_tilt * omega_pan
-        - cos_tilt * gravity_sin_tilt
-        + driving_torque_tilt_by_theta_tilt_term_2
-        + gravity_cos_tilt_sin_tilt
-    )
-    gx[3, 1] = -holding_tilt_by_theta_tilt_term_4 - inverse_determinant_mass_pan_tilt * (
-        -mass_pan_tilt_slide_tilt_sq
-        * (
-            -J_motor_tilt_ratio_tilt_accel_tilt * twice_ratio_tilt_by_theta_tilt
-            - carried_tilt_by_theta_tilt * holding_tilt_by_theta_tilt_term
-            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_theta_tilt
-            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_theta_tilt
-            - holding_tilt_by_theta_tilt_term_4
-        )
-        + mass_tilt
-        * (
-            -accel_pan * follower_inertia_tilt_by_theta_tilt
-            - accel_tilt * follower_coupling_tilt_by_theta_tilt
-            - follower_torque_tilt_by_theta_tilt_term
-        )
-    )
-    gx[4, 1] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_theta_tilt
-    gx[5, 1] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_theta_tilt
-    follower_torque_tilt_by_omega_gear_pan = active_pan * d_shaft_pan
-    gx[0, 2] = follower_torque_tilt_by_omega_gear_pan
-    follower_torque_tilt_by_omega_pan = (
-        -b_pan - coriolis_by_omega_pan * omega_tilt - follower_torque_tilt_by_omega_gear_pan
-    )
-    load_torque_tilt_by_omega_pan_term = coriolis_by_omega_pan * half_omega_pan + half_coriolis
-    load_torque_tilt_by_omega_pan = (
-        -follower_torque_tilt_by_omega_pan * mass_pan_inverse_mass_pan_tilt
-        + load_torque_tilt_by_omega_pan_term
-    )
-    carried_tilt_by_omega_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_pan
-    gx[3, 2] = (
-        -inverse_determinant_mass_pan_tilt
-        * (
-            follower_torque_tilt_by_omega_pan * mass_tilt
-            - mass_pan_tilt_slide_tilt_sq
-            * (
-                -carried_tilt_by_omega_pan * holding_tilt_by_theta_tilt_term
-                + load_torque_tilt_by_omega_pan_term
-            )
-        )
-        + load_torque_tilt_by_omega_pan_term
-    )
-    gx[4, 2] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_omega_pan
-    gx[5, 2] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_omega_pan
-    minus_d_shaft_pan = -d_shaft_pan
-    gx[8, 2] = minus_d_shaft_pan
-    gx[9, 2] = minus_d_shaft_pan
-    driving_torque_tilt_by_omega_tilt_term = (
-        J_motor_tilt * omega_tilt_ratio_tilt * twice_ratio_tilt_by_theta_tilt
-        + b_motor_tilt * ratio_tilt_sq
-    )
-    driving_torque_tilt_by_omega_tilt = -driving_torque_tilt_by_omega_tilt_term
-    follower_torque_tilt_by_omega_tilt = -coriolis - 2.0 * force_pan_term
-    load_torque_tilt_by_omega_tilt = (
-        -b_tilt - follower_torque_tilt_by_omega_tilt * mass_pan_inverse_mass_pan_tilt
-    )
-    carried_tilt_by_omega_tilt = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_tilt
-        + driving_torque_tilt_by_omega_tilt * load_inertia_tilt
-    )
-    holding_tilt_by_omega_tilt_term = b_tilt + driving_torque_tilt_by_omega_tilt_term
-    gx[3, 3] = -holding_tilt_by_omega_tilt_term - inverse_determinant_mass_pan_tilt * (
-        follower_torque_tilt_by_omega_tilt * mass_tilt
-        - mass_pan_tilt_slide_tilt_sq
-        * (
-            -carried_tilt_by_omega_tilt * holding_tilt_by_theta_tilt_term
-            - holding_tilt_by_omega_tilt_term
-        )
-    )
-    gx[4, 3] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_omega_tilt
-    gx[5, 3] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_omega_tilt
-    gx[0, 4] = follower_torque_tilt_by_theta_pan
-    load_torque_tilt_by_theta_gear_pan = (
-        -follower_torque_tilt_by_theta_gear_pan * mass_pan_inverse_mass_pan_tilt
-    )
-    carried_tilt_by_theta_gear_pan = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_gear_pan
-    )
-    holding_tilt_by_theta_gear_pan_term = holding_tilt_by_theta_tilt_term * mass_pan_tilt
-    gx[3, 4] = -inverse_determinant_mass_pan_tilt * (
-        carried_tilt_by_theta_gear_pan * holding_tilt_by_theta_gear_pan_term
-        + holding_tilt_by_theta_pan_term
-    )
-    gx[4, 4] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_theta_gear_pan
-    gx[5, 4] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_theta_gear_pan
-    gx[6, 4] = 1.0
-    gx[8, 4] = k_shaft_pan
-    gx[9, 4] = k_shaft_pan
-    gx[0, 5] = -follower_torque_tilt_by_omega_gear_pan
-    load_torque_tilt_by_omega_gear_pan = (
-        -follower_torque_tilt_by_omega_gear_pan * mass_pan_inverse_mass_pan_tilt
-    )
-    carried_tilt_by_omega_gear_pan = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_gear_pan
-    )
-    gx[3, 5] = -inverse_determinant_mass_pan_tilt * (
-        carried_tilt_by_omega_gear_pan * holding_tilt_by_theta_gear_pan_term
-        + follower_torque_tilt_by_omega_gear_pan * mass_tilt
-    )
-    gx[4, 5] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_omega_gear_pan
-    gx[5, 5] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_omega_gear_pan
-    gx[8, 5] = d_shaft_pan
-    gx[9, 5] = d_shaft_pan
-    gx[0, 6] = K_t_pan * N_pan
-    driving_torque_tilt_by_i_tilt = K_t_tilt * ratio_tilt
-    carried_tilt_by_i_tilt = driving_torque_tilt_by_i_tilt * load_inertia_tilt
-    holding_tilt_by_i_tilt_term = inverse_determinant * inverse_determinant_term
-    gx[3, 7] = driving_torque_tilt_by_i_tilt + holding_tilt_by_i_tilt_term * (
-        -carried_tilt_by_i_tilt * holding_tilt_by_theta_tilt_term + driving_torque_tilt_by_i_tilt
-    )
-    load_inertia_tilt_by_J_pan = load_inertia_tilt_by_theta_tilt_term_2
-    load_torque_tilt_by_J_pan = load_torque_tilt_by_theta_tilt_term
-    carried_tilt_by_J_pan = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_pan
-        + driving_torque_tilt * load_inertia_tilt_by_J_pan
-    )
-    lost_lowering_tilt_by_J_pan = (
-        -load_inertia_tilt_by_J_pan * lost_lowering_tilt_by_theta_tilt_term_2
-    )
-    lost_raising_tilt_by_J_pan = (
-        -load_inertia_tilt_by_J_pan * lost_raising_tilt_by_theta_tilt_term_2
-    )
-    gp[3, 0] = -inverse_determinant_mass_pan_tilt * (
-        -accel_pan * mass_tilt
-        - mass_pan_tilt_slide_tilt_sq
-        * (
-            -carried_tilt_by_J_pan * holding_tilt_by_theta_tilt_term
-            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_pan
-            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_pan
-        )
-    )
-    gp[4, 0] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_J_pan
-    gp[5, 0] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_J_pan
-    inertia_pan_per_sin_tilt_by_J_x_tilt = sin_tilt
-    follower_inertia_tilt_by_J_x_tilt = inertia_pan_per_sin_tilt_by_J_x_tilt * sin_tilt
-    load_inertia_tilt_by_J_x_tilt = (
-        follower_inertia_tilt_by_J_x_tilt * load_inertia_tilt_by_theta_tilt_term_2
-    )
-    cos_tilt_twice_omega_pan = cos_tilt * twice_omega_pan
-    coriolis_by_J_x_tilt = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_x_tilt
-    coriolis_by_J_x_tilt_omega_tilt = coriolis_by_J_x_tilt * omega_tilt
-    follower_torque_tilt_by_J_x_tilt = -coriolis_by_J_x_tilt_omega_tilt
-    coriolis_by_J_x_tilt_half_omega_pan = coriolis_by_J_x_tilt * half_omega_pan
-    load_torque_tilt_by_J_x_tilt = (
-        coriolis_by_J_x_tilt_half_omega_pan
-        + follower_inertia_tilt_by_J_x_tilt * load_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_J_x_tilt * mass_pan_inverse_mass_pan_tilt
-    )
-    carried_tilt_by_J_x_tilt = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_x_tilt
-        + driving_torque_tilt * load_inertia_tilt_by_J_x_tilt
-    )
-    lost_lowering_tilt_by_J_x_tilt = (
-        -load_inertia_tilt_by_J_x_tilt * lost_lowering_tilt_by_theta_tilt_term_2
-    )
-    lost_raising_tilt_by_J_x_tilt = (
-        -load_inertia_tilt_by_J_x_tilt * lost_raising_tilt_by_theta_tilt_term_2
-    )
-    gp[3, 1] = coriolis_by_J_x_tilt_half_omega_pan - inverse_determinant_mass_pan_tilt * (
-        -mass_pan_tilt_slide_tilt_sq
-        * (
-            -carried_tilt_by_J_x_tilt * holding_tilt_by_theta_tilt_term
-            + 0.5 * coriolis_by_J_x_tilt * omega_pan
-            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_x_tilt
-            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_x_tilt
-        )
-        + mass_tilt
-        * (-accel_pan * follower_inertia_tilt_by_J_x_tilt - coriolis_by_J_x_tilt_omega_tilt)
-    )
-    gp[4, 1] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_J_x_tilt
-    gp[5, 1] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_J_x_tilt
-    carried_tilt_by_J_y_tilt = driving_torque_tilt
-    lost_lowering_tilt_by_J_y_tilt = -lost_lowering_tilt_by_theta_tilt_term_2
-    lost_raising_tilt_by_J_y_tilt = -lost_raising_tilt_by_theta_tilt_term_2
-    gp[3, 2] = holding_tilt_by_i_tilt_term * (
-        -accel_tilt
-        - carried_tilt_by_J_y_tilt * holding_tilt_by_theta_tilt_term
-        - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_y_tilt
-        - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_y_tilt
-    )
-    inertia_pan_per_sin_tilt_by_J_z_tilt = -sin_tilt
-    follower_inertia_tilt_by_J_z_tilt = inertia_pan_per_sin_tilt_by_J_z_tilt * sin_tilt + 1.0
-    load_inertia_tilt_by_J_z_tilt = (
-        follower_inertia_tilt_by_J_z_tilt * load_inertia_tilt_by_theta_tilt_term_2
-    )
-    coriolis_by_J_z_tilt = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_z_tilt
-    coriolis_by_J_z_tilt_omega_tilt = coriolis_by_J_z_tilt * omega_tilt
-    follower_torque_tilt_by_J_z_tilt = -coriolis_by_J_z_tilt_omega_tilt
-    coriolis_by_J_z_tilt_half_omega_pan = coriolis_by_J_z_tilt * half_omega_pan
-    load_torque_tilt_by_J_z_tilt = (
-        coriolis_by_J_z_tilt_half_omega_pan
-        + follower_inertia_tilt_by_J_z_tilt * load_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_J_z_tilt * mass_pan_inverse_mass_pan_tilt
-    )
-    carried_tilt_by_J_z_tilt = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_z_tilt
-        + driving_torque_tilt * load_inertia_tilt_by_J_z_tilt
-    )
-    lost_lowering_tilt_by_J_z_tilt = (
-        -load_inertia_tilt_by_J_z_tilt * lost_lowering_tilt_by_theta_tilt_term_2
-    )
-    lost_raising_tilt_by_J_z_tilt = (
-        -load_inertia_tilt_by_J_z_tilt * lost_raising_tilt_by_theta_tilt_term_2
-    )
-    gp[3, 3] = coriolis_by_J_z_tilt_half_omega_pan - inverse_determinant_mass_pan_tilt * (
-        -mass_pan_tilt_slide_tilt_sq
-        * (
-            -carried_tilt_by_J_z_tilt * holding_tilt_by_theta_tilt_term
-            + 0.5 * coriolis_by_J_z_tilt * omega_pan
-            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_z_tilt
-            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_z_tilt
-        )
-        + mass_tilt
-        * (-accel_pan * follower_inertia_tilt_by_J_z_tilt - coriolis_by_J_z_tilt_omega_tilt)
-    )
-    gp[4, 3] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_J_z_tilt
-    gp[5, 3] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_J_z_tilt
-    coupling_cos_tilt_by_m_payload = c_y_payload * c_z_payload
-    follower_coupling_tilt_by_m_payload = (
-        -cos_tilt * coupling_cos_tilt_by_m_payload + coupling_sin_tilt_by_m_payload * sin_tilt
-    )
-    inertia_pan_by_m_payload = c_x_payload_sq + c_y_payload_sq
-    inertia_pan_sin_cos_tilt_by_m_payload = 2.0 * c_x_payload * c_z_payload
-    inertia_pan_sin_sq_tilt_by_m_payload = -c_x_payload_sq + c_z_payload_sq
-    inertia_pan_per_sin_tilt_by_m_payload = (
-        cos_tilt * inertia_pan_sin_cos_tilt_by_m_payload
-        + inertia_pan_sin_sq_tilt_by_m_payload * sin_tilt
-    )
-    follower_inertia_tilt_by_m_payload = (
-        inertia_pan_by_m_payload + inertia_pan_per_sin_tilt_by_m_payload * sin_tilt
-    )
-    inertia_tilt_by_m_payload = c_x_payload_sq + c_z_payload_sq
-    load_inertia_tilt_by_m_payload = (
-        -follower_coupling_tilt_by_m_payload * twice_mass_pan_inverse_mass_pan_tilt
-        + follower_inertia_tilt_by_m_payload * load_inertia_tilt_by_theta_tilt_term_2
-        + inertia_tilt_by_m_payload
-    )
-    coriolis_by_m_payload = (
-        cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_m_payload
-        - inertia_pan_sin_cos_tilt_by_m_payload * omega_pan
-    )
-    omega_tilt_sq_sin_tilt = omega_tilt_sq * sin_tilt
-    cos_tilt_omega_tilt_sq = cos_tilt * omega_tilt_sq
-    follower_torque_tilt_by_m_payload_term = (
-        coriolis_by_m_payload * omega_tilt
-        + cos_tilt_omega_tilt_sq * coupling_sin_tilt_by_m_payload
-        + coupling_cos_tilt_by_m_payload * omega_tilt_sq_sin_tilt
-    )
-    follower_torque_tilt_by_m_payload = -follower_torque_tilt_by_m_payload_term
-    gravity_cos_tilt_by_m_payload = c_x_payload * gravity
-    gravity_sin_tilt_by_m_payload = c_z_payload * gravity
-    load_torque_tilt_by_m_payload_term = (
-        coriolis_by_m_payload * half_omega_pan
-        + cos_tilt * gravity_cos_tilt_by_m_payload
-        + gravity_sin_tilt_by_m_payload * sin_tilt
-    )
-    load_torque_tilt_by_m_payload = (
-        -follower_coupling_tilt_by_m_payload * force_pan_mass_pan_inverse
-        + follower_inertia_tilt_by_m_payload * load_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_m_payload * mass_pan_inverse_mass_pan_tilt
-        + load_torque_tilt_by_m_payload_term
-    )
-    carried_tilt_by_m_payload = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_m_payload
-        + driving_torque_tilt * load_inertia_tilt_by_m_payload
-    )
-    lost_lowering_tilt_by_m_payload = (
-        -load_inertia_tilt_by_m_payload * lost_lowering_tilt_by_theta_tilt_term_2
-    )
-    lost_raising_tilt_by_m_payload = (
-        -load_inertia_tilt_by_m_payload * lost_raising_tilt_by_theta_tilt_term_2
-    )
-    holding_tilt_by_m_payload_term = accel_pan * follower_coupling_tilt_by_m_payload
-    gp[3, 4] = (
-        -holding_tilt_by_m_payload_term
-        - inverse_determinant_mass_pan_tilt
-        * (
-            -mass_pan_tilt_slide_tilt_sq
-            * (
-                -accel_tilt * inertia_tilt_by_m_payload
-                - carried_tilt_by_m_payload * holding_tilt_by_theta_tilt_term
-                + 0.5 * coriolis_by_m_payload * omega_pan
-                + cos_tilt * gravity_cos_tilt_by_m_payload
-                + gravity_sin_tilt_by_m_payload * sin_tilt
-                - holding_tilt_by_m_payload_term
-                - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_m_payload
-                - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_m_payload
-            )
-            + mass_tilt
-            * (
-                -accel_pan * follower_inertia_tilt_by_m_payload
-                - accel_tilt * follower_coupling_tilt_by_m_payload
-                - follower_torque_tilt_by_m_payload_term
-            )
-        )
-        + load_torque_tilt_by_m_payload_term
-    )
-    gp[4, 4] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_m_payload
-    gp[5, 4] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_m_payload
-    inertia_pan_per_sin_tilt_by_J_x_payload = sin_tilt
-    follower_inertia_tilt_by_J_x_payload = inertia_pan_per_sin_tilt_by_J_x_payload * sin_tilt
-    load_inertia_tilt_by_J_x_payload = (
-        follower_inertia_tilt_by_J_x_payload * load_inertia_tilt_by_theta_tilt_term_2
-    )
-    coriolis_by_J_x_payload = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_x_payload
-    coriolis_by_J_x_payload_omega_tilt = coriolis_by_J_x_payload * omega_tilt
-    follower_torque_tilt_by_J_x_payload = -coriolis_by_J_x_payload_omega_tilt
-    coriolis_by_J_x_payload_half_omega_pan = coriolis_by_J_x_payload * half_omega_pan
-    load_torque_tilt_by_J_x_payload = (
-        coriolis_by_J_x_payload_half_omega_pan
-        + follower_inertia_tilt_by_J_x_payload * load_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_J_x_payload * mass_pan_inverse_mass_pan_tilt
-    )
-    carried_tilt_by_J_x_payload = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_x_payload
-        + driving_torque_tilt * load_inertia_tilt_by_J_x_payload
-    )
-    lost_lowering_tilt_by_J_x_payload = (
-        -load_inertia_tilt_by_J_x_payload * lost_lowering_tilt_by_theta_tilt_term_2
-    )
-    lost_raising_tilt_by_J_x_payload = (
-        -load_inertia_tilt_by_J_x_payload * lost_raising_tilt_by_theta_tilt_term_2
-    )
-    gp[3, 5] = coriolis_by_J_x_payload_half_omega_pan - inverse_determinant_mass_pan_tilt * (
-        -mass_pan_tilt_slide_tilt_sq
-        * (
-            -carried_tilt_by_J_x_payload * holding_tilt_by_theta_tilt_term
-            + 0.5 * coriolis_by_J_x_payload * omega_pan
-            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_x_payload
-            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_x_payload
-        )
-        + mass_tilt
-        * (-accel_pan * follower_inertia_tilt_by_J_x_payload - coriolis_by_J_x_payload_omega_tilt)
-    )
-    gp[4, 5] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_J_x_payload
-    gp[5, 5] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_J_x_payload
-    carried_tilt_by_J_y_payload = driving_torque_tilt
-    lost_lowering_tilt_by_J_y_payload = -lost_lowering_tilt_by_theta_tilt_term_2
-    lost_raising_tilt_by_J_y_payload = -lost_raising_tilt_by_theta_tilt_term_2
-    gp[3, 6] = holding_tilt_by_i_tilt_term * (
-        -accel_tilt
-        - carried_tilt_by_J_y_payload * holding_tilt_by_theta_tilt_term
-        - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_y_payload
-        - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_y_payload
-    )
-    inertia_pan_per_sin_tilt_by_J_z_payload = -sin_tilt
-    follower_inertia_tilt_by_J_z_payload = inertia_pan_per_sin_tilt_by_J_z_payload * sin_tilt + 1.0
-    load_inertia_tilt_by_J_z_payload = (
-        follower_inertia_tilt_by_J_z_payload * load_inertia_tilt_by_theta_tilt_term_2
-    )
-    coriolis_by_J_z_payload = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_z_payload
-    coriolis_by_J_z_payload_omega_tilt = coriolis_by_J_z_payload * omega_tilt
-    follower_torque_tilt_by_J_z_payload = -coriolis_by_J_z_payload_omega_tilt
-    coriolis_by_J_z_payload_half_omega_pan = coriolis_by_J_z_payload * half_omega_pan
-    load_torque_tilt_by_J_z_payload = (
-        coriolis_by_J_z_payload_half_omega_pan
-        + follower_inertia_tilt_by_J_z_payload * load_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_J_z_payload * mass_pan_inverse_mass_pan_tilt
-    )
-    carried_tilt_by_J_z_payload = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_z_payload
-        + driving_torque_tilt * load_inertia_tilt_by_J_z_payload
-    )
-    lost_lowering_tilt_by_J_z_payload = (
-        -load_inertia_tilt_by_J_z_payload * lost_lowering_tilt_by_theta_tilt_term_2
-    )
-    lost_raising_tilt_by_J_z_payload = (
-        -load_inertia_tilt_by_J_z_payload * lost_raising_tilt_by_theta_tilt_term_2
-    )
-    gp[3, 7] = coriolis_by_J_z_payload_half_omega_pan - inverse_determinant_mass_pan_tilt * (
-        -mass_pan_tilt_slide_tilt_sq
-        * (
-            -carried_tilt_by_J_z_payload * holding_tilt_by_theta_tilt_term
-            + 0.5 * coriolis_by_J_z_payload * omega_pan
-            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_z_payload
-            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_z_payload
-        )
-        + mass_tilt
-        * (-accel_pan * follower_inertia_tilt_by_J_z_payload - coriolis_by_J_z_payload_omega_tilt)
-    )
-    gp[4, 7] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_J_z_payload
-    gp[5, 7] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_J_z_payload
-    follower_coupling_tilt_by_c_x_payload = coupling_cos_tilt_by_c_z_payload * sin_tilt
-    inertia_pan_sin_sq_tilt_by_c_x_payload = -inertia_tilt_by_c_x_payload
-    inertia_tilt_by_c_z_payload = 2.0 * gravity_sin_tilt_by_gravity
-    inertia_pan_per_sin_tilt_by_c_x_payload = (
-        cos_tilt * inertia_tilt_by_c_z_payload + inertia_pan_sin_sq_tilt_by_c_x_payload * sin_tilt
-    )
-    follower_inertia_tilt_by_c_x_payload = (
-        inertia_pan_per_sin_tilt_by_c_x_payload * sin_tilt + inertia_tilt_by_c_x_payload
-    )
-    load_inertia_tilt_by_c_x_payload = (
-        -follower_coupling_tilt_by_c_x_payload * twice_mass_pan_inverse_mass_pan_tilt
-        + follower_inertia_tilt_by_c_x_payload * load_inertia_tilt_by_theta_tilt_term_2
-        + inertia_tilt_by_c_x_payload
-    )
-    coriolis_by_c_x_payload = (
-        cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_c_x_payload
-        - inertia_tilt_by_c_z_payload * omega_pan
-    )
-    follower_torque_tilt_by_c_x_payload_term = (
-        coriolis_by_c_x_payload * omega_tilt
-        + cos_tilt_omega_tilt_sq * coupling_cos_tilt_by_c_z_payload
-    )
-    follower_torque_tilt_by_c_x_payload = -follower_torque_tilt_by_c_x_payload_term
-    gravity_cos_tilt_by_c_x_payload = gravity * m_payload
-    load_torque_tilt_by_c_x_payload = (
-        coriolis_by_c_x_payload * half_omega_pan
-        + cos_tilt * gravity_cos_tilt_by_c_x_payload
-        - follower_coupling_tilt_by_c_x_payload * force_pan_mass_pan_inverse
-        + follower_inertia_tilt_by_c_x_payload * load_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_c_x_payload * mass_pan_inverse_mass_pan_tilt
-    )
-    carried_tilt_by_c_x_payload = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_x_payload
-        + driving_torque_tilt * load_inertia_tilt_by_c_x_payload
-    )
-    lost_lowering_tilt_by_c_x_payload = (
-        -load_inertia_tilt_by_c_x_payload * lost_lowering_tilt_by_theta_tilt_term_2
-    )
-    lost_raising_tilt_by_c_x_payload = (
-        -load_inertia_tilt_by_c_x_payload * lost_raising_tilt_by_theta_tilt_term_2
-    )
-    holding_tilt_by_c_x_payload_term = (
-        accel_pan * follower_coupling_tilt_by_c_x_payload
-        - 0.5 * coriolis_by_c_x_payload * omega_pan
-        - cos_tilt * gravity_cos_tilt_by_c_x_payload
-    )
-    gp[3, 8] = -holding_tilt_by_c_x_payload_term - inverse_determinant_mass_pan_tilt * (
-        -mass_pan_tilt_slide_tilt_sq
-        * (
-            -accel_tilt * inertia_tilt_by_c_x_payload
-            - carried_tilt_by_c_x_payload * holding_tilt_by_theta_tilt_term
-            - holding_tilt_by_c_x_payload_term
-            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_c_x_payload
-            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_c_x_payload
-        )
-        + mass_tilt
-        * (
-            -accel_pan * follower_inertia_tilt_by_c_x_payload
-            - accel_tilt * follower_coupling_tilt_by_c_x_payload
-            - follower_torque_tilt_by_c_x_payload_term
-        )
-    )
-    gp[4, 8] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_c_x_payload
-    gp[5, 8] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_c_x_payload
-    follower_coupling_tilt_by_c_y_payload = (
-        -cos_tilt * gravity_sin_tilt_by_gravity + gravity_cos_tilt_by_gravity * sin_tilt
-    )
-    inertia_pan_by_c_y_payload = 2.0 * coupling_cos_tilt_by_c_z_payload
-    load_inertia_tilt_by_c_y_payload = (
-        -follower_coupling_tilt_by_c_y_payload * twice_mass_pan_inverse_mass_pan_tilt
-        + inertia_pan_by_c_y_payload * load_inertia_tilt_by_theta_tilt_term_2
-    )
-    follower_torque_tilt_by_c_y_payload_term = (
-        cos_tilt_omega_tilt_sq * gravity_cos_tilt_by_gravity
-        + gravity_sin_tilt_by_gravity * omega_tilt_sq_sin_tilt
-    )
-    follower_torque_tilt_by_c_y_payload = -follower_torque_tilt_by_c_y_payload_term
-    load_torque_tilt_by_c_y_payload = (
-        -follower_coupling_tilt_by_c_y_payload * force_pan_mass_pan_inverse
-        - follower_torque_tilt_by_c_y_payload * mass_pan_inverse_mass_pan_tilt
-        + force_pan
-        * inertia_pan_by_c_y_payload
-        * load_inertia_tilt_by_theta_tilt_term
-        * mass_pan_tilt
-    )
-    carried_tilt_by_c_y_payload = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_y_payload
-        + driving_torque_tilt * load_inertia_tilt_by_c_y_payload
-    )
-    lost_lowering_tilt_by_c_y_payload = (
-        -load_inertia_tilt_by_c_y_payload * lost_lowering_tilt_by_theta_tilt_term_2
-    )
-    lost_raising_tilt_by_c_y_payload = (
-        -load_inertia_tilt_by_c_y_payload * lost_raising_tilt_by_theta_tilt_term_2
-    )
-    holding_tilt_by_c_y_payload_term = accel_pan * follower_coupling_tilt_by_c_y_payload
-    gp[3, 9] = -holding_tilt_by_c_y_payload_term - inverse_determinant_mass_pan_tilt * (
-        -mass_pan_tilt_slide_tilt_sq
-        * (
-            -carried_tilt_by_c_y_payload * holding_tilt_by_theta_tilt_term
-            - holding_tilt_by_c_y_payload_term
-            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_c_y_payload
-            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_c_y_payload
-        )
-        + mass_tilt
-        * (
-            -accel_pan * inertia_pan_by_c_y_payload
-            - accel_tilt * follower_coupling_tilt_by_c_y_payload
-            - follower_torque_tilt_by_c_y_payload_term
-        )
-    )
-    gp[4, 9] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_c_y_payload
-    gp[5, 9] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_c_y_payload
-    follower_coupling_tilt_by_c_z_payload_term = cos_tilt * coupling_cos_tilt_by_c_z_payload
-    follower_coupling_tilt_by_c_z_payload = -follower_coupling_tilt_by_c_z_payload_term
-    inertia_pan_per_sin_tilt_by_c_z_payload = (
-        cos_tilt * inertia_tilt_by_c_x_payload + inertia_tilt_by_c_z_payload * sin_tilt
-    )
-    follower_inertia_tilt_by_c_z_payload = inertia_pan_per_sin_tilt_by_c_z_payload * sin_tilt
-    load_inertia_tilt_by_c_z_payload = (
-        -follower_coupling_tilt_by_c_z_payload * twice_mass_pan_inverse_mass_pan_tilt
-        + follower_inertia_tilt_by_c_z_payload * load_inertia_tilt_by_theta_tilt_term_2
-        + inertia_tilt_by_c_z_payload
-    )
-    coriolis_by_c_z_payload = (
-        cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_c_z_payload
-        - inertia_tilt_by_c_x_payload * omega_pan
-    )
-    follower_torque_tilt_by_c_z_payload_term = (
-        coriolis_by_c_z_payload * omega_tilt
-        + coupling_cos_tilt_by_c_z_payload * omega_tilt_sq_sin_tilt
-    )
-    follower_torque_tilt_by_c_z_payload = -follower_torque_tilt_by_c_z_payload_term
-    load_torque_tilt_by_c_z_payload_term = (
-        coriolis_by_c_z_payload * half_omega_pan + gravity_cos_tilt_by_c_x_payload * sin_tilt
-    )
-    load_torque_tilt_by_c_z_payload = (
-        -follower_coupling_tilt_by_c_z_payload * force_pan_mass_pan_inverse
-        + follower_inertia_tilt_by_c_z_payload * load_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_c_z_payload * mass_pan_inverse_mass_pan_tilt
-        + load_torque_tilt_by_c_z_payload_term
-    )
-    carried_tilt_by_c_z_payload = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_z_payload
-        + driving_torque_tilt * load_inertia_tilt_by_c_z_payload
-    )
-    lost_lowering_tilt_by_c_z_payload = (
-        -load_inertia_tilt_by_c_z_payload * lost_lowering_tilt_by_theta_tilt_term_2
-    )
-    lost_raising_tilt_by_c_z_payload = (
-        -load_inertia_tilt_by_c_z_payload * lost_raising_tilt_by_theta_tilt_term_2
-    )
-    gp[3, 10] = (
-        accel_pan * follower_coupling_tilt_by_c_z_payload_term
-        - inverse_determinant_mass_pan_tilt
-        * (
-            -mass_pan_tilt_slide_tilt_sq
-            * (
-                accel_pan * cos_tilt * coupling_cos_tilt_by_c_z_payload
-                - accel_tilt * inertia_tilt_by_c_z_payload
-                - carried_tilt_by_c_z_payload * holding_tilt_by_theta_tilt_term
-                + 0.5 * coriolis_by_c_z_payload * omega_pan
-                + gravity_cos_tilt_by_c_x_payload * sin_tilt
-                - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_c_z_payload
-                - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_c_z_payload
-            )
-            + mass_tilt
-            * (
-                -accel_pan * follower_inertia_tilt_by_c_z_payload
-                + accel_tilt * cos_tilt * coupling_cos_tilt_by_c_z_payload
-                - follower_torque_tilt_by_c_z_payload_term
-            )
-        )
-        + load_torque_tilt_by_c_z_payload_term
-    )
-    gp[4, 10] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_c_z_payload
-    gp[5, 10] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_c_z_payload
-    load_torque_tilt_by_b_pan = -follower_torque_tilt_by_b_pan * mass_pan_inverse_mass_pan_tilt
-    carried_tilt_by_b_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_b_pan
-    gp[3, 11] = -inverse_determinant_mass_pan_tilt * (
-        carried_tilt_by_b_pan * holding_tilt_by_theta_gear_pan_term - mass_tilt * omega_pan
-    )
-    gp[4, 11] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_b_pan
-    gp[5, 11] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_b_pan
-    load_torque_tilt_by_b_tilt = -omega_tilt
-    carried_tilt_by_b_tilt = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_b_tilt
-    gp[3, 12] = (
-        holding_tilt_by_i_tilt_term
-        * (-carried_tilt_by_b_tilt * holding_tilt_by_theta_tilt_term - omega_tilt)
-        + load_torque_tilt_by_b_tilt
-    )
-    gp[4, 12] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_b_tilt
-    gp[5, 12] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_b_tilt
-    gp[1, 14] = a_F_s_pan + 1.0
-    gp[2, 14] = 1.0 - a_F_s_pan
-    gp[1, 18] = F_s_pan
-    gp[2, 18] = -F_s_pan
-    half_side_pan = 0.5 * side_pan
-    holding_pan_by_gap_pan_term = follower_torque_tilt_by_theta_gear_pan * half_side_pan
-    gp[0, 21] = holding_pan_by_gap_pan_term
-    follower_torque_tilt_by_gap_pan = -holding_pan_by_gap_pan_term
-    load_torque_tilt_by_gap_pan = -follower_torque_tilt_by_gap_pan * mass_pan_inverse_mass_pan_tilt
-    carried_tilt_by_gap_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_gap_pan
-    gp[3, 21] = -inverse_determinant_mass_pan_tilt * (
-        carried_tilt_by_gap_pan * holding_tilt_by_theta_pan_term_4 * mass_pan_tilt * slide_tilt
-        - half_side_pan * holding_tilt_by_theta_pan_term
-    )
-    gp[4, 21] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_gap_pan
-    gp[5, 21] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_gap_pan
-    gp[7, 21] = 0.5
-    half_k_shaft_pan = 0.5 * k_shaft_pan
-    gp[8, 21] = -half_k_shaft_pan
-    gp[9, 21] = half_k_shaft_pan
-    follower_torque_tilt_by_k_shaft_pan = active_pan * shaft_torque_pan_term_3
-    gp[0, 22] = -follower_torque_tilt_by_k_shaft_pan
-    load_torque_tilt_by_k_shaft_pan = (
-        -follower_torque_tilt_by_k_shaft_pan * mass_pan_inverse_mass_pan_tilt
-    )
-    carried_tilt_by_k_shaft_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_k_shaft_pan
-    gp[3, 22] = -inverse_determinant_mass_pan_tilt * (
-        carried_tilt_by_k_shaft_pan * holding_tilt_by_theta_gear_pan_term
-        + follower_torque_tilt_by_k_shaft_pan * mass_tilt
-    )
-    gp[4, 22] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_k_shaft_pan
-    gp[5, 22] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_k_shaft_pan
-    gp[8, 22] = -half_gap_pan - shaft_torque_pan_term_2
-    gp[9, 22] = half_gap_pan + theta_gear_pan - theta_pan
-    follower_torque_tilt_by_d_shaft_pan = active_pan * shaft_torque_pan_term
-    gp[0, 23] = -follower_torque_tilt_by_d_shaft_pan
-    load_torque_tilt_by_d_shaft_pan = (
-        -follower_torque_tilt_by_d_shaft_pan * mass_pan_inverse_mass_pan_tilt
-    )
-    carried_tilt_by_d_shaft_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_d_shaft_pan
-    gp[3, 23] = -inverse_determinant_mass_pan_tilt * (
-        carried_tilt_by_d_shaft_pan * holding_tilt_by_theta_gear_pan_term
-        + follower_torque_tilt_by_d_shaft_pan * mass_tilt
-    )
-    gp[4, 23] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_d_shaft_pan
-    gp[5, 23] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_d_shaft_pan
-    gp[8, 23] = shaft_torque_pan_term
-    gp[9, 23] = shaft_torque_pan_term
-    gp[0, 26] = N_pan * i_pan
-    gp[0, 28] = K_t_pan * i_pan
-    driving_torque_tilt_by_K_t_tilt = i_tilt * ratio_tilt
-    carried_tilt_by_K_t_tilt = driving_torque_tilt_by_K_t_tilt * load_inertia_tilt
-    gp[3, 31] = driving_torque_tilt_by_K_t_tilt + holding_tilt_by_i_tilt_term * (
-        -carried_tilt_by_K_t_tilt * holding_tilt_by_theta_tilt_term + i_tilt * ratio_tilt
-    )
-    driving_torque_tilt_by_J_motor_tilt_term = omega_tilt_sq_ratio_tilt_by_theta_tilt * ratio_tilt
-    driving_torque_tilt_by_J_motor_tilt = -driving_torque_tilt_by_J_motor_tilt_term
-    carried_tilt_by_J_motor_tilt = (
-        driving_torque_tilt_by_J_motor_tilt * load_inertia_tilt - load_torque_tilt * ratio_tilt_sq
-    )
-    lost_lowering_tilt_by_J_motor_tilt = -lost_lowering_tilt_by_theta_tilt_term * ratio_tilt_sq
-    lost_raising_tilt_by_J_motor_tilt = -lost_raising_tilt_by_theta_tilt_term * ratio_tilt_sq
-    gp[3, 32] = driving_torque_tilt_by_J_motor_tilt + holding_tilt_by_i_tilt_term * (
-        -accel_tilt * ratio_tilt_sq
-        - carried_tilt_by_J_motor_tilt * holding_tilt_by_theta_tilt_term
-        - driving_torque_tilt_by_J_motor_tilt_term
-        - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_motor_tilt
-        - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_motor_tilt
-    )
-    omega_tilt_ratio_tilt_sq = omega_tilt * ratio_tilt_sq
-    driving_torque_tilt_by_b_motor_tilt = -omega_tilt_ratio_tilt_sq
-    carried_tilt_by_b_motor_tilt = driving_torque_tilt_by_b_motor_tilt * load_inertia_tilt
-    gp[3, 33] = driving_torque_tilt_by_b_motor_tilt + holding_tilt_by_i_tilt_term * (
-        -carried_tilt_by_b_motor_tilt * holding_tilt_by_theta_tilt_term - omega_tilt_ratio_tilt_sq
-    )
-    ratio_tilt_by_theta_tilt_by_N_tilt = (
-        -ratio_tilt_by_N_tilt_term * ratio_tilt_by_theta_tilt_term_5
-        + ratio_tilt_by_theta_tilt_term_2
-    )
-    driving_torque_tilt_by_N_tilt_term = (
-        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_N_tilt
-    )
-    driving_torque_tilt_by_N_tilt_term_2 = (
-        driving_torque_tilt_by_N_tilt_term
-        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_N_tilt
-    )
-    driving_torque_tilt_by_N_tilt = -driving_torque_tilt_by_N_tilt_term_2
-    carried_tilt_by_N_tilt_term = 2.0 * J_motor_tilt_ratio_tilt_load_torque_tilt
-    carried_tilt_by_N_tilt = (
-        -carried_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt
-        + driving_torque_tilt_by_N_tilt * load_inertia_tilt
-    )
-    lost_lowering_tilt_by_N_tilt_term = 2.0 * lost_lowering_tilt_by_theta_tilt_term_3
-    lost_lowering_tilt_by_N_tilt = -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt
-    lost_raising_tilt_by_N_tilt_term = 2.0 * lost_raising_tilt_by_theta_tilt_term_3
-    lost_raising_tilt_by_N_tilt = -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt
-    twice_J_motor_tilt_ratio_tilt_accel_tilt = 2.0 * J_motor_tilt_ratio_tilt_accel_tilt
-    gp[3, 34] = (
-        -driving_torque_tilt_by_N_tilt_term
-        + driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_N_tilt
-        + holding_tilt_by_i_tilt_term
-        * (
-            -carried_tilt_by_N_tilt * holding_tilt_by_theta_tilt_term
-            - driving_torque_tilt_by_N_tilt_term_2
-            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_N_tilt
-            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_N_tilt
-            - ratio_tilt_by_N_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
-        )
-    )
-    ratio_tilt_by_lead_tilt_term = 1.0 / (lead_tilt * lead_tilt)
-    ratio_tilt_by_lead_tilt_term_2 = math.pi * length_tilt_inverse * ratio_tilt_by_lead_tilt_term
-    ratio_tilt_by_lead_tilt = -N_tilt_ratio_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt_term_2
-    ratio_tilt_by_theta_tilt_by_lead_tilt = (
-        math.pi
-        * N_tilt
-        * length_tilt_by_theta_tilt
-        * ratio_tilt_by_N_tilt_term
-        * ratio_tilt_by_lead_tilt_term
-        * ratio_tilt_by_theta_tilt_term_3
-        - N_tilt_ratio_tilt_by_theta_tilt_term * ratio_tilt_by_lead_tilt_term_2
-    )
-    driving_torque_tilt_by_lead_tilt_term = (
-        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_lead_tilt
-    )
-    driving_torque_tilt_by_lead_tilt_term_2 = (
-        driving_torque_tilt_by_lead_tilt_term
-        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_lead_tilt
-    )
-    driving_torque_tilt_by_lead_tilt = -driving_torque_tilt_by_lead_tilt_term_2
-    carried_tilt_by_lead_tilt = (
-        -carried_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt
-        + driving_torque_tilt_by_lead_tilt * load_inertia_tilt
-    )
-    lowered_tilt_by_lead_tilt_term = lowered_tilt_term * ratio_tilt_by_lead_tilt_term
-    lowered_tilt_by_lead_tilt_term_2 = f_screw_tilt_lowered_tilt_term * lead_tilt_inverse
-    lowered_tilt_by_lead_tilt_term_3 = lowered_tilt_term_2 * lowered_tilt_term_3_inverse
-    lowered_tilt_by_lead_tilt_term_4 = 1.0 / (lowered_tilt_term_3 * lowered_tilt_term_3)
-    lowered_tilt_by_lead_tilt = (
-        lowered_tilt_by_lead_tilt_term * lowered_tilt_by_lead_tilt_term_3
-        + lowered_tilt_by_lead_tilt_term_2 * lowered_tilt_by_lead_tilt_term_4 * lowered_tilt_term_2
-        + lowered_tilt_term_lowered_tilt_term_4
-    )
-    lost_lowering_tilt_by_lead_tilt_term = (
-        -load_inertia_tilt * lost_lowering_tilt_by_theta_tilt_term - lost_lowering_tilt_term_3
-    )
-    lost_lowering_tilt_by_lead_tilt = (
-        -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt
-        + lost_lowering_tilt_by_lead_tilt_term * lowered_tilt_by_lead_tilt
-    )
-    raised_tilt_by_lead_tilt_term = raised_tilt_term * raised_tilt_term_2_inverse
-    raised_tilt_by_lead_tilt_term_2 = raised_tilt_term / (raised_tilt_term_2 * raised_tilt_term_2)
-    raised_tilt_by_lead_tilt = (
-        -lowered_tilt_by_lead_tilt_term * raised_tilt_by_lead_tilt_term
-        + lowered_tilt_by_lead_tilt_term_2 * raised_tilt_by_lead_tilt_term_2
-        + lowered_tilt_term_raised_tilt_term_3
-    )
-    lost_raising_tilt_by_lead_tilt_term = (
-        -load_inertia_tilt * lost_raising_tilt_by_theta_tilt_term + lost_raising_tilt_term_2_inverse
-    )
-    lost_raising_tilt_by_lead_tilt = (
-        -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt
-        + lost_raising_tilt_by_lead_tilt_term * raised_tilt_by_lead_tilt
-    )
-    gp[3, 35] = (
-        -driving_torque_tilt_by_lead_tilt_term
-        + driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_lead_tilt
-        + holding_tilt_by_i_tilt_term
-        * (
-            -carried_tilt_by_lead_tilt * holding_tilt_by_theta_tilt_term
-            - driving_torque_tilt_by_lead_tilt_term_2
-            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_lead_tilt
-            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_lead_tilt
-            - ratio_tilt_by_lead_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
-        )
-    )
-    half_load_torque_tilt = 0.5 * load_torque_tilt
-    forward_tilt_by_lead_tilt_term = 0.5 * abs(load_torque_tilt)
-    forward_tilt_by_lead_tilt_term_2 = forward_tilt_by_lead_tilt_term + half_load_torque_tilt
-    minus_forward_tilt_by_lead_tilt_term_2 = -forward_tilt_by_lead_tilt_term_2
-    forward_tilt_by_lead_tilt_term_3 = -forward_tilt_by_lead_tilt_term + half_load_torque_tilt
-    minus_forward_tilt_by_lead_tilt_term_3 = -forward_tilt_by_lead_tilt_term_3
-    gp[4, 35] = (
-        lowered_tilt_by_lead_tilt * minus_forward_tilt_by_lead_tilt_term_2
-        + minus_forward_tilt_by_lead_tilt_term_3 * raised_tilt_by_lead_tilt
-    )
-    gp[5, 35] = (
-        forward_tilt_by_lead_tilt_term_2 * raised_tilt_by_lead_tilt
-        + forward_tilt_by_lead_tilt_term_3 * lowered_tilt_by_lead_tilt
-    )
-    lowered_tilt_by_d_screw_tilt_term = math.pi * math.pi
-    lowered_tilt_by_d_screw_tilt_term_2 = d_screw_tilt * lowered_tilt_by_d_screw_tilt_term
-    lowered_tilt_by_d_screw_tilt_term_3 = f_screw_tilt * lowered_tilt_by_d_screw_tilt_term_2
-    lowered_tilt_by_d_screw_tilt = (
-        d_screw_tilt
-        * lead_tilt_inverse
-        * lowered_tilt_by_d_screw_tilt_term
-        * lowered_tilt_by_lead_tilt_term_4
-        * lowered_tilt_term_2
-        - lowered_tilt_by_d_screw_tilt_term_3 * lowered_tilt_term_4
-        - lowered_tilt_by_lead_tilt_term_3 * ratio_tilt_by_N_tilt_term_2
-    )
-    lost_lowering_tilt_by_d_screw_tilt = (
-        lost_lowering_tilt_by_lead_tilt_term * lowered_tilt_by_d_screw_tilt
-    )
-    raised_tilt_by_d_screw_tilt = (
-        -lead_tilt_inverse * lowered_tilt_by_d_screw_tilt_term_2 * raised_tilt_by_lead_tilt_term_2
-        + lowered_tilt_by_d_screw_tilt_term_3 * raised_tilt_term_3
-        + raised_tilt_by_lead_tilt_term * ratio_tilt_by_N_tilt_term_2
-    )
-    lost_raising_tilt_by_d_screw_tilt = (
-        lost_raising_tilt_by_lead_tilt_term * raised_tilt_by_d_screw_tilt
-    )
-    gp[3, 36] = holding_tilt_by_i_tilt_term * (
-        -holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_d_screw_tilt
-        - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_d_screw_tilt
-    )
-    gp[4, 36] = (
-        lowered_tilt_by_d_screw_tilt * minus_forward_tilt_by_lead_tilt_term_2
-        + minus_forward_tilt_by_lead_tilt_term_3 * raised_tilt_by_d_screw_tilt
-    )
-    gp[5, 36] = (
-        forward_tilt_by_lead_tilt_term_2 * raised_tilt_by_d_screw_tilt
-        + forward_tilt_by_lead_tilt_term_3 * lowered_tilt_by_d_screw_tilt
-    )
-    lowered_tilt_by_f_screw_tilt_term = (
-        d_screw_tilt * d_screw_tilt
-    ) * lowered_tilt_by_d_screw_tilt_term
-    lowered_tilt_by_f_screw_tilt = (
-        math.pi * d_screw_tilt * lowered_tilt_by_lead_tilt_term_4 * lowered_tilt_term_2
-        - lowered_tilt_by_f_screw_tilt_term * lowered_tilt_term_4
-    )
-    lost_lowering_tilt_by_f_screw_tilt = (
-        lost_lowering_tilt_by_lead_tilt_term * lowered_tilt_by_f_screw_tilt
-    )
-    raised_tilt_by_f_screw_tilt = (
-        lowered_tilt_by_f_screw_tilt_term * raised_tilt_term_3
-        + lowered_tilt_term * raised_tilt_by_lead_tilt_term_2
-    )
-    lost_raising_tilt_by_f_screw_tilt = (
-        lost_raising_tilt_by_lead_tilt_term * raised_tilt_by_f_screw_tilt
-    )
-    gp[3, 37] = holding_tilt_by_i_tilt_term * (
-        -holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_f_screw_tilt
-        - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_f_screw_tilt
-    )
-    gp[4, 37] = (
-        lowered_tilt_by_f_screw_tilt * minus_forward_tilt_by_lead_tilt_term_2
-        + minus_forward_tilt_by_lead_tilt_term_3 * raised_tilt_by_f_screw_tilt
-    )
-    gp[5, 37] = (
-        forward_tilt_by_lead_tilt_term_2 * raised_tilt_by_f_screw_tilt
-        + forward_tilt_by_lead_tilt_term_3 * lowered_tilt_by_f_screw_tilt
-    )
-    linkage_cos_tilt_by_l_ground_tilt = 2.0 * l_ground_tilt
-    linkage_sin_tilt_inverse = 1.0 / linkage_sin_tilt
-    linkage_sin_tilt_by_l_ground_tilt_term = linkage_cos_tilt * linkage_sin_tilt_inverse
-    linkage_sin_tilt_by_l_ground_tilt = (
-        l_ground_tilt * linkage_sin_tilt_inverse * linkage_sin_tilt_term
-        - linkage_cos_tilt_by_l_ground_tilt * linkage_sin_tilt_by_l_ground_tilt_term
-    )
-    half_length_tilt_inverse_2 = 0.5 * length_tilt_inverse_2
-    cos_tilt_half_length_tilt_inverse_2 = cos_tilt * half_length_tilt_inverse_2
-    half_length_tilt_inverse_2_sin_tilt = half_length_tilt_inverse_2 * sin_tilt
-    length_tilt_by_l_ground_tilt = (
-        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_l_ground_tilt
-        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_l_ground_tilt
-        + l_ground_tilt * length_tilt_inverse_2
-    )
-    ratio_tilt_by_l_ground_tilt_term = N_tilt_ratio_tilt_by_N_tilt_term_3 * cos_tilt
-    ratio_tilt_by_l_ground_tilt = (
-        math.pi
-        * N_tilt
-        * lead_tilt_inverse
-        * length_tilt_inverse
-        * linkage_cos_tilt_by_l_ground_tilt
-        * sin_tilt
-        - length_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
-        - linkage_sin_tilt_by_l_ground_tilt * ratio_tilt_by_l_ground_tilt_term
-    )
-    length_tilt_by_theta_tilt_by_l_ground_tilt_term = (
-        0.5 * length_tilt_by_theta_tilt_by_theta_tilt_term
-    )
-    length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 = (
-        cos_tilt * length_tilt_by_theta_tilt_by_l_ground_tilt_term
-        + half_length_tilt_inverse_2_sin_tilt
-    )
-    length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 = (
-        -cos_tilt_half_length_tilt_inverse_2
-        + length_tilt_by_theta_tilt_by_l_ground_tilt_term * sin_tilt
-    )
-    length_tilt_by_theta_tilt_by_l_ground_tilt = (
-        -l_ground_tilt * length_tilt_by_theta_tilt_by_theta_tilt_term
-        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_l_ground_tilt
-        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_l_ground_tilt
-    )
-    N_tilt_ratio_tilt_by_theta_tilt_term_5 = N_tilt * ratio_tilt_by_theta_tilt_term_5
-    ratio_tilt_by_theta_tilt_by_l_ground_tilt_term = (
-        N_tilt_ratio_tilt_by_N_tilt_term_3 * sin_tilt
-        + N_tilt_ratio_tilt_by_theta_tilt_term_5 * cos_tilt
-    )
-    ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2 = (
-        -N_tilt_ratio_tilt_by_theta_tilt_term_5 * sin_tilt + ratio_tilt_by_l_ground_tilt_term
-    )
-    ratio_tilt_by_theta_tilt_by_l_ground_tilt = (
-        length_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
-        - length_tilt_by_theta_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
-        + linkage_cos_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
-        + linkage_sin_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
-    )
-    driving_torque_tilt_by_l_ground_tilt_term = (
-        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_l_ground_tilt
-    )
-    driving_torque_tilt_by_l_ground_tilt_term_2 = (
-        driving_torque_tilt_by_l_ground_tilt_term
-        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_l_ground_tilt
-    )
-    driving_torque_tilt_by_l_ground_tilt = -driving_torque_tilt_by_l_ground_tilt_term_2
-    carried_tilt_by_l_ground_tilt = (
-        -carried_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
-        + driving_torque_tilt_by_l_ground_tilt * load_inertia_tilt
-    )
-    lost_lowering_tilt_by_l_ground_tilt = (
-        -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
-    )
-    lost_raising_tilt_by_l_ground_tilt = (
-        -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
-    )
-    gp[3, 38] = (
-        -driving_torque_tilt_by_l_ground_tilt_term
-        + driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_l_ground_tilt
-        + holding_tilt_by_i_tilt_term
-        * (
-            -carried_tilt_by_l_ground_tilt * holding_tilt_by_theta_tilt_term
-            - driving_torque_tilt_by_l_ground_tilt_term_2
-            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_l_ground_tilt
-            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_l_ground_tilt
-            - ratio_tilt_by_l_ground_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
-        )
-    )
-    linkage_cos_tilt_by_s_start_tilt = -2.0 * l_min_tilt - 2.0 * s_start_tilt
-    linkage_sin_tilt_by_l_min_tilt = (
-        -linkage_cos_tilt_by_s_start_tilt * linkage_sin_tilt_by_l_ground_tilt_term
-    )
-    length_tilt_by_l_min_tilt = (
-        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_s_start_tilt
-        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_l_min_tilt
-    )
-    ratio_tilt_by_l_min_tilt = (
-        math.pi
-        * N_tilt
-        * lead_tilt_inverse
-        * length_tilt_inverse
-        * linkage_cos_tilt_by_s_start_tilt
-        * sin_tilt
-        - length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
-        - linkage_sin_tilt_by_l_min_tilt * ratio_tilt_by_l_ground_tilt_term
-    )
-    length_tilt_by_theta_tilt_by_l_min_tilt = (
-        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_s_start_tilt
-        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_l_min_tilt
-    )
-    ratio_tilt_by_theta_tilt_by_l_min_tilt = (
-        length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
-        - length_tilt_by_theta_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
-        + linkage_cos_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
-        + linkage_sin_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
-    )
-    driving_torque_tilt_by_l_min_tilt_term = (
-        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_l_min_tilt
-    )
-    driving_torque_tilt_by_l_min_tilt_term_2 = (
-        driving_torque_tilt_by_l_min_tilt_term
-        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_l_min_tilt
-    )
-    driving_torque_tilt_by_l_min_tilt = -driving_torque_tilt_by_l_min_tilt_term_2
-    carried_tilt_by_l_min_tilt = (
-        -carried_tilt_by_N_tilt_term * ratio_tilt_by_l_min_tilt
-        + driving_torque_tilt_by_l_min_tilt * load_inertia_tilt
-    )
-    lost_lowering_tilt_by_l_min_tilt = -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_l_min_tilt
-    lost_raising_tilt_by_l_min_tilt = -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_l_min_tilt
-    gp[3, 39] = (
-        -driving_torque_tilt_by_l_min_tilt_term
-        + driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_l_min_tilt
-        + holding_tilt_by_i_tilt_term
-        * (
-            -carried_tilt_by_l_min_tilt * holding_tilt_by_theta_tilt_term
-            - driving_torque_tilt_by_l_min_tilt_term_2
-            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_l_min_tilt
-            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_l_min_tilt
-            - ratio_tilt_by_l_min_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
-        )
-    )
-    linkage_cos_tilt_by_r_arm_tilt = 2.0 * r_arm_tilt
-    linkage_sin_tilt_by_r_arm_tilt = (
-        4.0 * l_ground_tilt_sq * linkage_sin_tilt_inverse * r_arm_tilt
-        - linkage_cos_tilt_by_r_arm_tilt * linkage_sin_tilt_by_l_ground_tilt_term
-    )
-    length_tilt_by_r_arm_tilt = (
-        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_r_arm_tilt
-        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_r_arm_tilt
-        + length_tilt_inverse_2 * r_arm_tilt
-    )
-    ratio_tilt_by_r_arm_tilt = (
-        math.pi
-        * N_tilt
-        * lead_tilt_inverse
-        * length_tilt_inverse
-        * linkage_cos_tilt_by_r_arm_tilt
-        * sin_tilt
-        - length_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
-        - linkage_sin_tilt_by_r_arm_tilt * ratio_tilt_by_l_ground_tilt_term
-    )
-    length_tilt_by_theta_tilt_by_r_arm_tilt = (
-        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_r_arm_tilt
-        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_r_arm_tilt
-        - length_tilt_by_theta_tilt_by_theta_tilt_term * r_arm_tilt
-    )
-    ratio_tilt_by_theta_tilt_by_r_arm_tilt = (
-        length_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
-        - length_tilt_by_theta_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
-        + linkage_cos_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
-        + linkage_sin_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
-    )
-    driving_torque_tilt_by_r_arm_tilt_term = (
-        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_r_arm_tilt
-    )
-    driving_torque_tilt_by_r_arm_tilt_term_2 = (
-        driving_torque_tilt_by_r_arm_tilt_term
-        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_r_arm_tilt
-    )
-    driving_torque_tilt_by_r_arm_tilt = -driving_torque_tilt_by_r_arm_tilt_term_2
-    carried_tilt_by_r_arm_tilt = (
-        -carried_tilt_by_N_tilt_term * ratio_tilt_by_r_arm_tilt
-        + driving_torque_tilt_by_r_arm_tilt * load_inertia_tilt
-    )
-    lost_lowering_tilt_by_r_arm_tilt = -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_r_arm_tilt
-    lost_raising_tilt_by_r_arm_tilt = -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_r_arm_tilt
-    gp[3, 40] = (
-        -driving_torque_tilt_by_r_arm_tilt_term
-        + driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_r_arm_tilt
-        + holding_tilt_by_i_tilt_term
-        * (
-            -carried_tilt_by_r_arm_tilt * holding_tilt_by_theta_tilt_term
-            - driving_torque_tilt_by_r_arm_tilt_term_2
-            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_r_arm_tilt
-            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_r_arm_tilt
-            - ratio_tilt_by_r_arm_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
-        )
-    )
-    linkage_sin_tilt_by_s_start_tilt = (
-        -linkage_cos_tilt_by_s_start_tilt * linkage_sin_tilt_by_l_ground_tilt_term
-    )
-    length_tilt_by_s_start_tilt = (
-        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_s_start_tilt
-        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_s_start_tilt
-    )
-    ratio_tilt_by_s_start_tilt = (
-        math.pi
-        * N_tilt
-        * lead_tilt_inverse
-        * length_tilt_inverse
-        * linkage_cos_tilt_by_s_start_tilt
-        * sin_tilt
-        - length_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
-        - linkage_sin_tilt_by_s_start_tilt * ratio_tilt_by_l_ground_tilt_term
-    )
-    length_tilt_by_theta_tilt_by_s_start_tilt = (
-        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_s_start_tilt
-        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_s_start_tilt
-    )
-    ratio_tilt_by_theta_tilt_by_s_start_tilt = (
-        length_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
-        - length_tilt_by_theta_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
-        + linkage_cos_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
-        + linkage_sin_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
-    )
-    driving_torque_tilt_by_s_start_tilt_term = (
-        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_s_start_tilt
-    )
-    driving_torque_tilt_by_s_start_tilt_term_2 = (
-        driving_torque_tilt_by_s_start_tilt_term
-        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_s_start_tilt
-    )
-    driving_torque_tilt_by_s_start_tilt = -driving_torque_tilt_by_s_start_tilt_term_2
-    carried_tilt_by_s_start_tilt = (
-        -carried_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
-        + driving_torque_tilt_by_s_start_tilt * load_inertia_tilt
-    )
-    lost_lowering_tilt_by_s_start_tilt = (
-        -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
-    )
-    lost_raising_tilt_by_s_start_tilt = (
-        -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
-    )
-    gp[3, 41] = (
-        -driving_torque_tilt_by_s_start_tilt_term
-        + driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_s_start_tilt
-        + holding_tilt_by_i_tilt_term
-        * (
-            -carried_tilt_by_s_start_tilt * holding_tilt_by_theta_tilt_term
-            - driving_torque_tilt_by_s_start_tilt_term_2
-            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_s_start_tilt
-            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_s_start_tilt
-            - ratio_tilt_by_s_start_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
-        )
-    )
-    load_torque_tilt_by_gravity = (
-        cos_tilt * gravity_cos_tilt_by_gravity + gravity_sin_tilt_by_gravity * sin_tilt
-    )
-    carried_tilt_by_gravity = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_gravity
-    gp[3, 43] = (
-        holding_tilt_by_i_tilt_term
-        * (-carried_tilt_by_gravity * holding_tilt_by_theta_tilt_term + load_torque_tilt_by_gravity)
-        + load_torque_tilt_by_gravity
-    )
-    gp[4, 43] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_gravity
-    gp[5, 43] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_gravity
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def outputs(t, x, u, p, y):
-    """Write the measured signals into y.
-
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; y [4] in
-    OUTPUT_UNITS.
-    """
-    theta_pan = x[0]
-    theta_tilt = x[1]
-    i_pan = x[6]
-    i_tilt = x[7]
-    y[0] = theta_pan
-    y[1] = theta_tilt
-    y[2] = i_pan
-    y[3] = i_tilt
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def output_jacobian(t, x, u, p, yx, yp):
-    """Write the non-zero derivatives of outputs by state and parameter.
-
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; yx [4,
-    8]; yp [4, 44].
-    """
-    yx[0, 0] = 1.0
-    yx[1, 1] = 1.0
-    yx[2, 6] = 1.0
-    yx[3, 7] = 1.0
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def energy(t, x, u, p, m, e):
     """Write stored energy in J, power in and dissipated power in W into e.
 
     t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
-    see MODE_NAMES; e [3] in J, W and W.
+      see MODE_NAMES; e [3] in J, W and W.
+    e: stored, power_in, dissipated.
     """
-    theta_pan = x[0]
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    theta_gear_pan = x[4]
-    omega_gear_pan = x[5]
-    i_pan = x[6]
-    i_tilt = x[7]
-    u_pan = u[0]
-    u_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    b_pan = p[11]
-    b_tilt = p[12]
-    F_c_pan = p[13]
-    F_s_pan = p[14]
-    v_s_pan = p[15]
-    F_v_pan = p[16]
-    a_F_c_pan = p[17]
-    a_F_s_pan = p[18]
-    a_v_s_pan = p[19]
-    a_F_v_pan = p[20]
-    gap_pan = p[21]
-    k_shaft_pan = p[22]
-    d_shaft_pan = p[23]
-    L_pan = p[24]
-    R_pan = p[25]
-    J_motor_pan = p[27]
-    N_pan = p[28]
-    L_tilt = p[29]
-    R_tilt = p[30]
-    K_t_tilt = p[31]
-    J_motor_tilt = p[32]
-    b_motor_tilt = p[33]
-    N_tilt = p[34]
-    lead_tilt = p[35]
-    d_screw_tilt = p[36]
-    f_screw_tilt = p[37]
-    l_ground_tilt = p[38]
-    l_min_tilt = p[39]
-    r_arm_tilt = p[40]
-    s_start_tilt = p[41]
-    gravity = p[43]
-    slide_pan = m[0]
-    slide_tilt = m[1]
-    side_pan = m[2]
-    active_pan = m[3]
-    sin_tilt = math.sin(theta_tilt)
-    c_x_payload_sin_tilt = c_x_payload * sin_tilt
-    c_y_payload_m_payload = c_y_payload * m_payload
-    stored_term = c_x_payload_sin_tilt * c_y_payload_m_payload
-    cos_tilt = math.cos(theta_tilt)
-    c_z_payload_cos_tilt = c_z_payload * cos_tilt
-    stored_term_2 = c_y_payload_m_payload * c_z_payload_cos_tilt
-    sin_tilt_sq = sin_tilt * sin_tilt
-    J_x_payload_sin_tilt_sq = J_x_payload * sin_tilt_sq
-    J_x_tilt_sin_tilt_sq = J_x_tilt * sin_tilt_sq
-    cos_tilt_sq = cos_tilt * cos_tilt
-    J_z_payload_cos_tilt_sq = J_z_payload * cos_tilt_sq
-    J_z_tilt_cos_tilt_sq = J_z_tilt * cos_tilt_sq
-    c_x_payload_sq = c_x_payload * c_x_payload
-    c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
-    c_x_payload_sq_m_payload_cos_tilt_sq = c_x_payload_sq_m_payload * cos_tilt_sq
-    stored_term_3 = (c_y_payload * c_y_payload) * m_payload
-    sin_tilt_sq_stored_term_3 = sin_tilt_sq * stored_term_3
-    cos_tilt_sq_stored_term_3 = cos_tilt_sq * stored_term_3
-    stored_term_4 = (c_z_payload * c_z_payload) * m_payload
-    sin_tilt_sq_stored_term_4 = sin_tilt_sq * stored_term_4
-    stored_term_5 = c_x_payload_sin_tilt * c_z_payload_cos_tilt
-    omega_pan_omega_tilt = omega_pan * omega_tilt
-    half_gap_pan = 0.5 * gap_pan
-    stored_term_6 = -half_gap_pan * side_pan + theta_gear_pan - theta_pan
-    gravity_m_payload = gravity * m_payload
-    omega_pan_sq = omega_pan * omega_pan
-    m_payload_omega_pan_sq = m_payload * omega_pan_sq
-    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
-    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
-    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
-    linkage_cos_tilt = l_ground_tilt_sq_plus_r_arm_tilt_sq - (
-        (l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)
-    )
-    linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
-    linkage_sin_tilt = math.sqrt(
-        4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt * linkage_cos_tilt)
-    )
-    cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
-    ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
-    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
-    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt = math.sqrt(
-        -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
-    )
-    lead_tilt_inverse = 1.0 / lead_tilt
-    ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
-    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
-    ratio_tilt_sq = ratio_tilt * ratio_tilt
-    J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    cos_tilt, sin_tilt, omega_gear_pan_minus_omega_pan = forces[0], forces[1], forces[2]
+    shaft_torque_pan_term, shaft_torque_pan_term_2 = forces[3], forces[5]
+    k_shaft_pan_shaft_torque_pan_term_2, mass_pan, mass_pan_tilt = forces[6], forces[9], forces[10]
+    ratio_tilt_sq, omega_tilt_sq, force_tilt_term = forces[12], forces[13], forces[16]
+    mass_tilt, omega_gear_pan_sq, force_gear_pan_term = forces[19], forces[20], forces[21]
+    omega_pan, omega_tilt, omega_gear_pan, i_pan, i_tilt = x[2], x[3], x[5], x[6], x[7]
+    u_pan, u_tilt = u[0], u[1]
+    b_pan, b_tilt, k_shaft_pan, L_pan, R_pan, L_tilt = p[11], p[12], p[22], p[24], p[25], p[29]
+    R_tilt, b_motor_tilt = p[30], p[33]
+    side_pan, active_pan = m[2], m[3]
+    gravity_cos_tilt, gravity_sin_tilt, mass_gear_pan = c[13], c[14], c[15]
     side_pan_sq = side_pan * side_pan
-    i_tilt_sq = i_tilt * i_tilt
     i_pan_sq = i_pan * i_pan
-    omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
-    half_omega_pan_sq = 0.5 * omega_pan_sq
-    omega_tilt_sq = omega_tilt * omega_tilt
-    half_omega_tilt_sq = 0.5 * omega_tilt_sq
-    e[0] = (
-        0.5 * J_motor_pan * (N_pan * N_pan) * omega_gear_pan_sq
-        + J_motor_tilt_ratio_tilt_sq * half_omega_tilt_sq
-        + J_pan * half_omega_pan_sq
-        + J_x_payload_sin_tilt_sq * half_omega_pan_sq
-        + J_x_tilt_sin_tilt_sq * half_omega_pan_sq
-        + J_y_payload * half_omega_tilt_sq
-        + J_y_tilt * half_omega_tilt_sq
-        + J_z_payload_cos_tilt_sq * half_omega_pan_sq
-        + J_z_tilt_cos_tilt_sq * half_omega_pan_sq
-        + 0.5 * L_pan * i_pan_sq
-        + 0.5 * L_tilt * i_tilt_sq
-        - c_x_payload_sin_tilt * gravity_m_payload
-        + c_x_payload_sq_m_payload * half_omega_tilt_sq
-        + c_x_payload_sq_m_payload_cos_tilt_sq * half_omega_pan_sq
-        + c_z_payload_cos_tilt * gravity_m_payload
-        + cos_tilt_sq_stored_term_3 * half_omega_pan_sq
-        + half_omega_pan_sq * sin_tilt_sq_stored_term_3
-        + half_omega_pan_sq * sin_tilt_sq_stored_term_4
-        + half_omega_tilt_sq * stored_term_4
-        + 0.5 * k_shaft_pan * side_pan_sq * (stored_term_6 * stored_term_6)
-        + m_payload_omega_pan_sq * stored_term_5
-        + omega_pan_omega_tilt * stored_term
-        - omega_pan_omega_tilt * stored_term_2
-    )
-    e[1] = i_pan * u_pan + i_tilt * u_tilt
-    coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
-    follower_coupling_tilt = stored_term - stored_term_2
-    twice_m_payload = 2.0 * m_payload
-    follower_inertia_tilt = (
-        J_pan
-        + J_x_payload_sin_tilt_sq
-        + J_x_tilt_sin_tilt_sq
-        + J_z_payload_cos_tilt_sq
-        + J_z_tilt_cos_tilt_sq
-        + c_x_payload_sq_m_payload_cos_tilt_sq
-        + cos_tilt_sq_stored_term_3
-        + sin_tilt_sq_stored_term_3
-        + sin_tilt_sq_stored_term_4
-        + stored_term_5 * twice_m_payload
-    )
-    follower_inertia_tilt_inverse = 1.0 / follower_inertia_tilt
-    load_inertia_tilt = (
-        J_y_payload
-        + J_y_tilt
-        + c_x_payload_sq_m_payload
-        - (follower_coupling_tilt * follower_coupling_tilt) * follower_inertia_tilt_inverse
-        + stored_term_4
-    )
-    lowered_tilt_term = math.pi * d_screw_tilt
-    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
-    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
-    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
-    lowered_tilt = (
-        -lead_tilt_inverse_lowered_tilt_term
-        * (f_screw_tilt_lowered_tilt_term - lead_tilt)
-        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
-    )
-    lost_lowering_tilt = (1.0 - lowered_tilt) / (
-        abs(J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt)
-    )
-    raised_tilt = (
-        lead_tilt_inverse_lowered_tilt_term
-        * (f_screw_tilt_lowered_tilt_term + lead_tilt)
-        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
-    )
-    lost_raising_tilt = (raised_tilt - 1.0) / (
-        J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * raised_tilt
-    )
-    follower_torque_tilt_term = omega_gear_pan - omega_pan
-    d_shaft_pan_follower_torque_tilt_term = d_shaft_pan * follower_torque_tilt_term
-    k_shaft_pan_stored_term_6 = k_shaft_pan * stored_term_6
-    dissipated_term = a_F_s_pan * slide_pan + 1.0
-    length_tilt_by_theta_tilt = (
-        -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
-    ) / length_tilt
-    ratio_tilt_by_theta_tilt = (
-        -math.pi
-        * N_tilt
-        * lead_tilt_inverse
-        * length_tilt_by_theta_tilt
-        * ratio_tilt_term
-        / (length_tilt * length_tilt)
-        + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
-    )
-    driving_torque_tilt_term = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt * ratio_tilt
-    driving_torque_tilt = (
-        -J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
-        + driving_torque_tilt_term * ratio_tilt
-    )
-    cos_tilt_sin_tilt = cos_tilt * sin_tilt
-    follower_torque_tilt_term_2 = 2.0 * cos_tilt_sin_tilt * omega_pan_omega_tilt
-    c_x_payload_cos_tilt = c_x_payload * cos_tilt
-    c_y_payload_m_payload_omega_tilt_sq = c_y_payload_m_payload * omega_tilt_sq
-    c_z_payload_sin_tilt = c_z_payload * sin_tilt
-    c_x_payload_c_z_payload = c_x_payload * c_z_payload
-    follower_torque_tilt_term_3 = d_shaft_pan_follower_torque_tilt_term + k_shaft_pan_stored_term_6
-    follower_torque_tilt = (
-        -J_x_payload * follower_torque_tilt_term_2
-        - J_x_tilt * follower_torque_tilt_term_2
-        + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt * sin_tilt
-        + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
-        + active_pan * follower_torque_tilt_term_3
-        - b_pan * omega_pan
-        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
-        - c_x_payload_c_z_payload * cos_tilt_sq * omega_pan_omega_tilt * twice_m_payload
-        - c_x_payload_cos_tilt * c_y_payload_m_payload_omega_tilt_sq
-        + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
-        - c_y_payload_m_payload_omega_tilt_sq * c_z_payload_sin_tilt
-        - follower_torque_tilt_term_2 * stored_term_4
-    )
-    cos_tilt_sin_tilt_omega_pan_sq = cos_tilt_sin_tilt * omega_pan_sq
-    load_torque_tilt_term = c_x_payload_c_z_payload * m_payload_omega_pan_sq
-    load_torque_tilt = (
-        J_x_payload * cos_tilt_sin_tilt_omega_pan_sq
-        + J_x_tilt * cos_tilt_sin_tilt_omega_pan_sq
-        - J_z_payload * cos_tilt_sin_tilt_omega_pan_sq
-        - J_z_tilt * cos_tilt_sin_tilt_omega_pan_sq
-        - b_tilt * omega_tilt
-        + c_x_payload_cos_tilt * gravity_m_payload
-        - c_x_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
-        + c_z_payload_sin_tilt * gravity_m_payload
-        + cos_tilt_sin_tilt_omega_pan_sq * stored_term_4
-        + cos_tilt_sq * load_torque_tilt_term
-        - follower_coupling_tilt * follower_inertia_tilt_inverse * follower_torque_tilt
-        - load_torque_tilt_term * sin_tilt_sq
-    )
-    carried_tilt = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt + driving_torque_tilt * load_inertia_tilt
-    )
-    carried_tilt_slide_tilt = carried_tilt * slide_tilt
-    omega_gear_pan_slide_pan = omega_gear_pan * slide_pan
-    stribeck_square_pan_term = a_v_s_pan * slide_pan + 1.0
-    stribeck_square_pan = omega_gear_pan_sq / (
-        (stribeck_square_pan_term * stribeck_square_pan_term) * (v_s_pan * v_s_pan)
-    )
-    twist_rate_pan = follower_torque_tilt_term * side_pan_sq
-    viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
+    i_tilt_sq = i_tilt * i_tilt
+    omega_pan_sq = omega_pan * omega_pan
+    e[0] = (0.5 * L_pan * i_pan_sq + 0.5 * L_tilt * i_tilt_sq + cos_tilt * gravity_sin_tilt
+        - gravity_cos_tilt * sin_tilt
+        + 0.5 * k_shaft_pan * (shaft_torque_pan_term_2 * shaft_torque_pan_term_2) * side_pan_sq
+        + 0.5 * mass_gear_pan * omega_gear_pan_sq + 0.5 * mass_pan * omega_pan_sq
+        + mass_pan_tilt * omega_pan * omega_tilt + 0.5 * mass_tilt * omega_tilt_sq)  # stored
+    e[1] = i_pan * u_pan + i_tilt * u_tilt  # power_in
+    twist_rate_pan = omega_gear_pan_minus_omega_pan * side_pan_sq
     winding_loss_pan = R_pan * i_pan_sq
     winding_loss_tilt = R_tilt * i_tilt_sq
-    e[2] = (
-        b_motor_tilt * omega_tilt_sq * ratio_tilt_sq
-        + b_pan * omega_pan_sq
-        + b_tilt * omega_tilt_sq
-        + omega_gear_pan_slide_pan
-        * (
-            coulomb_torque_pan
-            + omega_gear_pan_slide_pan * viscous_coefficient_pan
-            + (F_s_pan * dissipated_term - coulomb_torque_pan) * math.exp(-stribeck_square_pan)
-        )
-        + omega_tilt
-        * slide_tilt
-        * (
-            0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
-            + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
-        )
-        + twist_rate_pan
-        * (
-            active_pan * d_shaft_pan_follower_torque_tilt_term
-            - k_shaft_pan_stored_term_6 * (1.0 - active_pan)
-        )
-        + winding_loss_pan
-        + winding_loss_tilt
-    )
+    e[2] = (b_motor_tilt * omega_tilt_sq * ratio_tilt_sq + b_pan * omega_pan_sq
+        + b_tilt * omega_tilt_sq + force_gear_pan_term * omega_gear_pan
+        + force_tilt_term * omega_tilt + twist_rate_pan * (active_pan * shaft_torque_pan_term
+        - k_shaft_pan_shaft_torque_pan_term_2 * (1.0 - active_pan)) + winding_loss_pan
+        + winding_loss_tilt)  # dissipated
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def equation_error(t, x, u, p, m, r):
-    """Write the torque that every row lacks, then rates of other states into r; x ends in accel.
+    """Write torques that rows lack, then other states' rates, into r; x ends in accelerations.
 
     t in s; x [11] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
-    see MODE_NAMES; r [5] in N m, then STATE_UNITS per s.
+      see MODE_NAMES; r [5] in N m, then STATE_UNITS per s.
+    x: STATE_NAMES, then given_accel_pan, given_accel_tilt, given_accel_gear_pan.
+    r: torque_pan, torque_tilt, torque_gear_pan, rate_of_i_pan, rate_of_i_tilt.
     """
-    theta_pan = x[0]
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    theta_gear_pan = x[4]
-    omega_gear_pan = x[5]
-    i_pan = x[6]
-    i_tilt = x[7]
-    accel_pan = x[8]
-    accel_tilt = x[9]
-    accel_gear_pan = x[10]
-    u_pan = u[0]
-    u_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    b_pan = p[11]
-    b_tilt = p[12]
-    F_c_pan = p[13]
-    F_s_pan = p[14]
-    v_s_pan = p[15]
-    F_v_pan = p[16]
-    a_F_c_pan = p[17]
-    a_F_s_pan = p[18]
-    a_v_s_pan = p[19]
-    a_F_v_pan = p[20]
-    gap_pan = p[21]
-    k_shaft_pan = p[22]
-    d_shaft_pan = p[23]
-    L_pan = p[24]
-    R_pan = p[25]
-    K_t_pan = p[26]
-    J_motor_pan = p[27]
-    N_pan = p[28]
-    L_tilt = p[29]
-    R_tilt = p[30]
-    K_t_tilt = p[31]
-    J_motor_tilt = p[32]
-    b_motor_tilt = p[33]
-    N_tilt = p[34]
-    lead_tilt = p[35]
-    d_screw_tilt = p[36]
-    f_screw_tilt = p[37]
-    l_ground_tilt = p[38]
-    l_min_tilt = p[39]
-    r_arm_tilt = p[40]
-    s_start_tilt = p[41]
-    gravity = p[43]
-    slide_pan = m[0]
-    slide_tilt = m[1]
-    side_pan = m[2]
-    active_pan = m[3]
-    inertia_pan_sin_cos_tilt = 2.0 * c_x_payload * c_z_payload * m_payload
-    inertia_pan_sin_sq_tilt_term = (c_x_payload * c_x_payload) * m_payload
-    inertia_pan_sin_sq_tilt_term_2 = (c_z_payload * c_z_payload) * m_payload
-    inertia_pan_sin_sq_tilt = (
-        J_x_payload
-        + J_x_tilt
-        - J_z_payload
-        - J_z_tilt
-        - inertia_pan_sin_sq_tilt_term
-        + inertia_pan_sin_sq_tilt_term_2
-    )
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    force_pan, mass_pan, mass_pan_tilt, force_tilt = forces[8], forces[9], forces[10], forces[18]
+    mass_tilt, force_gear_pan, rate_of_i_pan = forces[19], forces[22], forces[23]
+    rate_of_i_tilt = forces[24]
+    given_accel_pan, given_accel_tilt, given_accel_gear_pan = x[8], x[9], x[10]
+    mass_gear_pan = c[15]
+    r[0] = -force_pan + given_accel_pan * mass_pan + given_accel_tilt * mass_pan_tilt  # torque_pan
+    # torque_tilt
+    r[1] = -force_tilt + given_accel_pan * mass_pan_tilt + given_accel_tilt * mass_tilt
+    r[2] = -force_gear_pan + given_accel_gear_pan * mass_gear_pan  # torque_gear_pan
+    r[3] = rate_of_i_pan
+    r[4] = rate_of_i_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
+    """Write the non-zero derivatives of dx into fx, fu, fp and those of guards into gx, gp.
+
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
+      see MODE_NAMES; fx [8, 8]; fu [8, 2]; fp [8, 44]; gx [10, 8]; gp [10, 44].
+    fx: rows and columns as STATE_NAMES.
+    fu: rows as STATE_NAMES, columns as INPUT_NAMES.
+    fp: rows as STATE_NAMES, columns as PARAMETERS.
+    gx: rows as g of guards, columns as STATE_NAMES.
+    gp: rows as g of guards, columns as PARAMETERS.
+    Where fp or gx is empty, it and what follows it is not computed.
+    """
+    theta_pan, theta_tilt, omega_pan, omega_tilt, theta_gear_pan = x[0], x[1], x[2], x[3], x[4]
+    omega_gear_pan, i_pan, i_tilt = x[5], x[6], x[7]
+    u_pan, u_tilt = u[0], u[1]
+    J_pan, J_x_tilt, J_y_tilt, J_z_tilt, m_payload, J_x_payload = p[0], p[1], p[2], p[3], p[4], p[5]
+    J_y_payload, J_z_payload, c_x_payload, c_y_payload, c_z_payload = p[6], p[7], p[8], p[9], p[10]
+    b_pan, b_tilt, F_c_pan, F_s_pan, v_s_pan, F_v_pan = p[11], p[12], p[13], p[14], p[15], p[16]
+    a_F_c_pan, a_F_s_pan, a_v_s_pan, a_F_v_pan, gap_pan = p[17], p[18], p[19], p[20], p[21]
+    k_shaft_pan, d_shaft_pan, L_pan, R_pan, K_t_pan = p[22], p[23], p[24], p[25], p[26]
+    J_motor_pan, N_pan, L_tilt, R_tilt, K_t_tilt = p[27], p[28], p[29], p[30], p[31]
+    J_motor_tilt, b_motor_tilt, N_tilt, lead_tilt, d_screw_tilt = p[32], p[33], p[34], p[35], p[36]
+    f_screw_tilt, l_ground_tilt, l_min_tilt, r_arm_tilt = p[37], p[38], p[39], p[40]
+    s_start_tilt, gravity = p[41], p[43]
+    slide_pan, slide_tilt, side_pan, active_pan = m[0], m[1], m[2], m[3]
+    c_x_payload_sq = c_x_payload * c_x_payload
+    c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
+    c_y_payload_sq = c_y_payload * c_y_payload
+    inertia_pan = (J_pan + J_z_payload + J_z_tilt + c_x_payload_sq_m_payload
+        + c_y_payload_sq * m_payload)
     cos_tilt = math.cos(theta_tilt)
+    gravity_sin_tilt_by_gravity = c_z_payload * m_payload
+    inertia_tilt_by_c_z_payload = 2.0 * gravity_sin_tilt_by_gravity
+    inertia_pan_sin_cos_tilt = c_x_payload * inertia_tilt_by_c_z_payload
+    c_z_payload_sq = c_z_payload * c_z_payload
+    c_z_payload_sq_m_payload = c_z_payload_sq * m_payload
+    inertia_pan_sin_sq_tilt = (J_x_payload + J_x_tilt - J_z_payload - J_z_tilt
+        - c_x_payload_sq_m_payload + c_z_payload_sq_m_payload)
     sin_tilt = math.sin(theta_tilt)
-    inertia_pan_per_sin_tilt = (
-        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
-    )
-    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
-    c_y_payload_m_payload = c_y_payload * m_payload
-    coupling_cos_tilt = c_y_payload_m_payload * c_z_payload
-    coupling_sin_tilt = c_x_payload * c_y_payload_m_payload
-    shaft_torque_pan_term = omega_gear_pan - omega_pan
-    half_gap_pan = 0.5 * gap_pan
-    shaft_torque_pan_term_2 = -half_gap_pan * side_pan + theta_gear_pan - theta_pan
-    shaft_torque_pan = active_pan * (
-        d_shaft_pan * shaft_torque_pan_term + k_shaft_pan * shaft_torque_pan_term_2
-    )
-    force_pan = (
-        -b_pan * omega_pan
-        - omega_tilt
-        * (coriolis + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt))
-        + shaft_torque_pan
-    )
-    inertia_pan = (
-        J_pan
-        + J_z_payload
-        + J_z_tilt
-        + (c_y_payload * c_y_payload) * m_payload
-        + inertia_pan_sin_sq_tilt_term
-    )
-    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
-    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
-    r[0] = accel_pan * mass_pan + accel_tilt * mass_pan_tilt - force_pan
-    inertia_tilt = (
-        J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term + inertia_pan_sin_sq_tilt_term_2
-    )
-    mass_pan_inverse = 1.0 / mass_pan
-    load_inertia_tilt = inertia_tilt - mass_pan_inverse * (mass_pan_tilt * mass_pan_tilt)
-    lowered_tilt_term = math.pi * d_screw_tilt
-    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
-    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
-    lead_tilt_inverse = 1.0 / lead_tilt
-    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
-    lowered_tilt = (
-        -lead_tilt_inverse_lowered_tilt_term
-        * (f_screw_tilt_lowered_tilt_term - lead_tilt)
-        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
-    )
+    inertia_pan_per_sin_tilt = (cos_tilt * inertia_pan_sin_cos_tilt
+        + inertia_pan_sin_sq_tilt * sin_tilt)
+    inertia_pan_per_sin_tilt_sin_tilt = inertia_pan_per_sin_tilt * sin_tilt
+    mass_pan = inertia_pan + inertia_pan_per_sin_tilt_sin_tilt
+    inertia_tilt = J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
     l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
     r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
     l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
-    linkage_cos_tilt = l_ground_tilt_sq_plus_r_arm_tilt_sq - (
-        (l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)
-    )
-    linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
-    linkage_sin_tilt = math.sqrt(
-        4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt * linkage_cos_tilt)
-    )
-    cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
-    ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
+    l_min_tilt_plus_s_start_tilt = l_min_tilt + s_start_tilt
+    linkage_cos_tilt = (l_ground_tilt_sq_plus_r_arm_tilt_sq
+        - (l_min_tilt_plus_s_start_tilt * l_min_tilt_plus_s_start_tilt))
     cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
+    linkage_sin_tilt_term = 4.0 * r_arm_tilt_sq
+    linkage_sin_tilt = (math.sqrt(l_ground_tilt_sq * linkage_sin_tilt_term
+        - (linkage_cos_tilt * linkage_cos_tilt)))
     linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt = math.sqrt(
-        -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
-    )
-    ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
-    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
-    lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
-    lost_lowering_tilt = (1.0 - lowered_tilt) / (
-        abs(load_inertia_tilt * lowered_tilt + lost_lowering_tilt_term)
-    )
-    raised_tilt = (
-        lead_tilt_inverse_lowered_tilt_term
-        * (f_screw_tilt_lowered_tilt_term + lead_tilt)
-        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
-    )
-    lost_raising_tilt = (raised_tilt - 1.0) / (
-        load_inertia_tilt * raised_tilt + lost_lowering_tilt_term
-    )
-    length_tilt_by_theta_tilt = (
-        -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
-    ) / length_tilt
-    ratio_tilt_by_theta_tilt = (
-        -math.pi
-        * N_tilt
-        * lead_tilt_inverse
-        * length_tilt_by_theta_tilt
-        * ratio_tilt_term
-        / (length_tilt * length_tilt)
-        + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
-    )
-    driving_torque_tilt_term = (
-        J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt * ratio_tilt_by_theta_tilt
-    )
-    gravity_m_payload = gravity * m_payload
-    gravity_cos_tilt = c_x_payload * gravity_m_payload
-    gravity_sin_tilt = c_z_payload * gravity_m_payload
-    load_torque_tilt_term = (
-        -b_tilt * omega_tilt
-        + 0.5 * coriolis * omega_pan
-        + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt
-    )
+    length_tilt = (math.sqrt(-cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq
+        - linkage_sin_tilt_sin_tilt))
+    length_tilt_inverse = 1.0 / length_tilt
+    lead_tilt_inverse = 1.0 / lead_tilt
+    lead_tilt_inverse_pi = math.pi * lead_tilt_inverse
+    lead_tilt_inverse_pi_length_tilt_inverse = lead_tilt_inverse_pi * length_tilt_inverse
+    ratio_tilt_by_N_tilt_term = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
+    ratio_tilt_by_N_tilt = lead_tilt_inverse_pi_length_tilt_inverse * ratio_tilt_by_N_tilt_term
+    ratio_tilt = N_tilt * ratio_tilt_by_N_tilt
+    ratio_tilt_sq = ratio_tilt * ratio_tilt
+    J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
+    mass_tilt = J_motor_tilt_ratio_tilt_sq + inertia_tilt
+    slide_tilt_sq = slide_tilt * slide_tilt
+    coupling_sin_tilt_by_c_x_payload = c_y_payload * m_payload
+    coupling_cos_tilt = c_z_payload * coupling_sin_tilt_by_c_x_payload
+    coupling_sin_tilt = c_x_payload * coupling_sin_tilt_by_c_x_payload
+    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
+    mass_pan_tilt_sq = mass_pan_tilt * mass_pan_tilt
+    inverse_determinant = 1.0 / (mass_pan * mass_tilt - mass_pan_tilt_sq * slide_tilt_sq)
+    holding_pan_by_theta_pan = active_pan * k_shaft_pan
+    mass_pan_tilt_slide_tilt_sq = mass_pan_tilt * slide_tilt_sq
+    mass_pan_inverse = 1.0 / mass_pan
+    mass_pan_inverse_mass_pan_tilt = mass_pan_inverse * mass_pan_tilt
+    load_torque_tilt_by_theta_gear_pan = -holding_pan_by_theta_pan * mass_pan_inverse_mass_pan_tilt
+    carried_tilt_by_theta_gear_pan = (-J_motor_tilt_ratio_tilt_sq
+        * load_torque_tilt_by_theta_gear_pan)
+    d_screw_tilt_pi = math.pi * d_screw_tilt
+    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
+    lowered_tilt_term = d_screw_tilt_pi + f_screw_tilt_lead_tilt
+    lowered_tilt_term_inverse = 1.0 / lowered_tilt_term
+    d_screw_tilt_pi_f_screw_tilt = d_screw_tilt_pi * f_screw_tilt
+    lowered_tilt_term_2 = d_screw_tilt_pi_f_screw_tilt - lead_tilt
+    lowered_tilt_term_3 = lowered_tilt_term_2 * lowered_tilt_term_inverse
+    d_screw_tilt_pi_lead_tilt_inverse = d_screw_tilt_pi * lead_tilt_inverse
+    lowered_tilt = -d_screw_tilt_pi_lead_tilt_inverse * lowered_tilt_term_3
+    one_minus_lowered_tilt = 1.0 - lowered_tilt
+    load_inertia_tilt = inertia_tilt - mass_pan_inverse * mass_pan_tilt_sq
+    lost_lowering_tilt_term = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt
+    abs_lost_lowering_tilt_term_inverse = 1.0 / abs(lost_lowering_tilt_term)
+    lost_lowering_tilt = abs_lost_lowering_tilt_term_inverse * one_minus_lowered_tilt
+    raised_tilt_term = d_screw_tilt_pi - f_screw_tilt_lead_tilt
+    raised_tilt_term_inverse = 1.0 / raised_tilt_term
+    raised_tilt_term_2 = d_screw_tilt_pi_f_screw_tilt + lead_tilt
+    raised_tilt_term_3 = raised_tilt_term_2 * raised_tilt_term_inverse
+    raised_tilt = d_screw_tilt_pi_lead_tilt_inverse * raised_tilt_term_3
+    raised_tilt_minus_one = raised_tilt - 1.0
+    lost_raising_tilt_term = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * raised_tilt
+    lost_raising_tilt_term_inverse = 1.0 / lost_raising_tilt_term
+    lost_raising_tilt = lost_raising_tilt_term_inverse * raised_tilt_minus_one
+    accel_pan_by_theta_gear_pan_term = lost_lowering_tilt + lost_raising_tilt
+    ratio_tilt_by_theta_tilt_term = cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt
+    ratio_tilt_by_theta_tilt_term_2 = (lead_tilt_inverse_pi_length_tilt_inverse
+        * ratio_tilt_by_theta_tilt_term)
+    half_length_tilt_inverse = 0.5 * length_tilt_inverse
+    length_tilt_by_theta_tilt = half_length_tilt_inverse * ratio_tilt_by_N_tilt_term
+    length_tilt_inverse_sq = 1.0 / (length_tilt * length_tilt)
+    ratio_tilt_by_theta_tilt_term_3 = lead_tilt_inverse_pi * length_tilt_inverse_sq
+    ratio_tilt_by_theta_tilt_term_4 = ratio_tilt_by_N_tilt_term * ratio_tilt_by_theta_tilt_term_3
+    ratio_tilt_by_theta_tilt_term_5 = length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_term_4
+    ratio_tilt_by_theta_tilt = (N_tilt * ratio_tilt_by_theta_tilt_term_2
+        - N_tilt * ratio_tilt_by_theta_tilt_term_5)
+    omega_tilt_sq = omega_tilt * omega_tilt
+    omega_tilt_sq_ratio_tilt_by_theta_tilt = omega_tilt_sq * ratio_tilt_by_theta_tilt
+    driving_torque_tilt_term = omega_tilt_sq_ratio_tilt_by_theta_tilt * ratio_tilt
+    J_motor_tilt_driving_torque_tilt_term = J_motor_tilt * driving_torque_tilt_term
     omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
-    driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
-    driving_torque_tilt = -driving_torque_tilt_term + driving_torque_tilt_term_2 * ratio_tilt
-    load_torque_tilt = -force_pan * mass_pan_inverse * mass_pan_tilt + load_torque_tilt_term
-    carried_tilt = (
-        driving_torque_tilt * load_inertia_tilt - load_torque_tilt * lost_lowering_tilt_term
-    )
+    b_motor_tilt_omega_tilt_ratio_tilt = b_motor_tilt * omega_tilt_ratio_tilt
+    driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt_omega_tilt_ratio_tilt
+    driving_torque_tilt = (-J_motor_tilt_driving_torque_tilt_term
+        + driving_torque_tilt_term_2 * ratio_tilt)
+    cos_tilt_inertia_pan_per_sin_tilt = cos_tilt * inertia_pan_per_sin_tilt
+    coriolis_by_omega_pan = 2.0 * cos_tilt_inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt
+    coriolis = coriolis_by_omega_pan * omega_pan
+    upper_pan_by_d_shaft_pan = omega_gear_pan - omega_pan
+    half_gap_pan = 0.5 * gap_pan
+    theta_pan_minus_theta_gear_pan = -theta_gear_pan + theta_pan
+    shaft_torque_pan_term = -half_gap_pan * side_pan - theta_pan_minus_theta_gear_pan
+    shaft_torque_pan = (active_pan * (d_shaft_pan * upper_pan_by_d_shaft_pan
+        + k_shaft_pan * shaft_torque_pan_term))
+    follower_coupling_tilt_by_theta_tilt = (cos_tilt * coupling_sin_tilt
+        + coupling_cos_tilt * sin_tilt)
+    force_pan_term = follower_coupling_tilt_by_theta_tilt * omega_tilt
+    force_pan = -b_pan * omega_pan - omega_tilt * (coriolis + force_pan_term) + shaft_torque_pan
+    gravity_cos_tilt_by_c_x_payload = gravity * m_payload
+    gravity_cos_tilt = c_x_payload * gravity_cos_tilt_by_c_x_payload
+    gravity_sin_tilt = c_z_payload * gravity_cos_tilt_by_c_x_payload
+    force_tilt_by_coriolis = 0.5 * omega_pan
+    load_torque_tilt_term = (-b_tilt * omega_tilt + coriolis * force_tilt_by_coriolis
+        + cos_tilt * gravity_cos_tilt + gravity_sin_tilt * sin_tilt)
+    load_torque_tilt = -force_pan * mass_pan_inverse_mass_pan_tilt + load_torque_tilt_term
+    carried_tilt = (-J_motor_tilt_ratio_tilt_sq * load_torque_tilt
+        + driving_torque_tilt * load_inertia_tilt)
     carried_tilt_slide_tilt = carried_tilt * slide_tilt
+    accel_pan_by_theta_gear_pan_term_2 = -0.5 * lost_lowering_tilt + 0.5 * lost_raising_tilt
+    force_tilt_by_carried_tilt = (-slide_tilt * (0.5 * accel_pan_by_theta_gear_pan_term * slide_tilt
+        * (0.0 if carried_tilt_slide_tilt == 0 else math.copysign(1, carried_tilt_slide_tilt))
+        + accel_pan_by_theta_gear_pan_term_2 * slide_tilt))
+    balance_tilt_by_theta_gear_pan = carried_tilt_by_theta_gear_pan * force_tilt_by_carried_tilt
+    accel_pan_by_theta_gear_pan = (inverse_determinant * (-balance_tilt_by_theta_gear_pan
+        * mass_pan_tilt_slide_tilt_sq + holding_pan_by_theta_pan * mass_tilt))
+    fx[2, 0] = -accel_pan_by_theta_gear_pan  # accel_pan_by_theta_pan
+    inverse_determinant_slide_tilt_sq = inverse_determinant * slide_tilt_sq
+    accel_tilt_by_theta_gear_pan = (inverse_determinant_slide_tilt_sq
+        * (balance_tilt_by_theta_gear_pan * mass_pan - holding_pan_by_theta_pan
+        * mass_pan_tilt_slide_tilt_sq))
+    fx[3, 0] = -accel_tilt_by_theta_gear_pan  # accel_tilt_by_theta_pan
+    N_pan_sq = N_pan * N_pan
+    mass_gear_pan = J_motor_pan * N_pan_sq
+    inverse_mass_gear_pan = 1.0 / mass_gear_pan
+    slide_pan_sq = slide_pan * slide_pan
+    inverse_mass_gear_pan_slide_pan_sq = inverse_mass_gear_pan * slide_pan_sq
+    accel_gear_pan_by_theta_gear_pan = (-holding_pan_by_theta_pan
+        * inverse_mass_gear_pan_slide_pan_sq)
+    fx[5, 0] = -accel_gear_pan_by_theta_gear_pan  # accel_gear_pan_by_theta_pan
+    abs_carried_tilt_slide_tilt = abs(carried_tilt_slide_tilt)
+    half_abs_carried_tilt_slide_tilt = 0.5 * abs_carried_tilt_slide_tilt
     transmitted_torque_tilt = driving_torque_tilt_term_2 * ratio_tilt
-    force_tilt = (
-        -driving_torque_tilt_term
-        + load_torque_tilt_term
-        - slide_tilt
-        * (
-            0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
-            + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
-        )
-        + transmitted_torque_tilt
-    )
-    mass_tilt = inertia_tilt + lost_lowering_tilt_term
-    r[1] = accel_pan * mass_pan_tilt + accel_tilt * mass_tilt - force_tilt
-    coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
-    force_gear_pan_term = a_F_s_pan * slide_pan + 1.0
-    stribeck_square_pan_term = a_v_s_pan * slide_pan + 1.0
-    stribeck_square_pan = (omega_gear_pan * omega_gear_pan) / (
-        (stribeck_square_pan_term * stribeck_square_pan_term) * (v_s_pan * v_s_pan)
-    )
-    viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
-    force_gear_pan = (
-        K_t_pan * N_pan * i_pan
-        - shaft_torque_pan
-        - slide_pan
-        * (
-            coulomb_torque_pan
-            + omega_gear_pan * slide_pan * viscous_coefficient_pan
-            + (F_s_pan * force_gear_pan_term - coulomb_torque_pan) * math.exp(-stribeck_square_pan)
-        )
-    )
-    mass_gear_pan = J_motor_pan * (N_pan * N_pan)
-    r[2] = accel_gear_pan * mass_gear_pan - force_gear_pan
-    r[3] = (-K_t_pan * N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
-    r[4] = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
+    force_tilt = (-J_motor_tilt_driving_torque_tilt_term + load_torque_tilt_term
+        - slide_tilt * (accel_pan_by_theta_gear_pan_term * half_abs_carried_tilt_slide_tilt
+        + accel_pan_by_theta_gear_pan_term_2 * carried_tilt_slide_tilt) + transmitted_torque_tilt)
+    accel_pan = (inverse_determinant * (force_pan * mass_tilt
+        - force_tilt * mass_pan_tilt_slide_tilt_sq))
+    accel_tilt = (inverse_determinant_slide_tilt_sq * (-force_pan * mass_pan_tilt_slide_tilt_sq
+        + force_tilt * mass_pan))
+    inertia_pan_per_sin_tilt_by_theta_tilt = (cos_tilt * inertia_pan_sin_sq_tilt
+        - inertia_pan_sin_cos_tilt * sin_tilt)
+    twice_omega_pan = 2.0 * omega_pan
+    coriolis_by_inertia_pan_per_sin_tilt = cos_tilt * twice_omega_pan
+    coriolis_by_theta_tilt = (coriolis_by_inertia_pan_per_sin_tilt
+        * inertia_pan_per_sin_tilt_by_theta_tilt - inertia_pan_per_sin_tilt_sin_tilt
+        * twice_omega_pan)
+    accel_pan_by_theta_tilt_term = (coriolis_by_theta_tilt * omega_tilt
+        - mass_pan_tilt * omega_tilt_sq)
+    balance_pan_by_theta_tilt = (-accel_pan * (cos_tilt_inertia_pan_per_sin_tilt
+        + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt) - accel_pan_by_theta_tilt_term
+        - accel_tilt * follower_coupling_tilt_by_theta_tilt)
+    length_tilt_inverse_cubed = 1.0 / (length_tilt * length_tilt * length_tilt)
+    length_tilt_by_theta_tilt_by_theta_tilt_term = 0.25 * length_tilt_inverse_cubed
+    length_tilt_by_theta_tilt_by_theta_tilt = (half_length_tilt_inverse
+        * ratio_tilt_by_theta_tilt_term - length_tilt_by_theta_tilt_by_theta_tilt_term
+        * (ratio_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt_term))
+    N_tilt_ratio_tilt_by_theta_tilt_term = N_tilt * ratio_tilt_by_theta_tilt_term
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term = (N_tilt_ratio_tilt_by_theta_tilt_term
+        * ratio_tilt_by_theta_tilt_term_3)
+    ratio_tilt_by_length_tilt = -N_tilt * ratio_tilt_by_theta_tilt_term_4
+    ratio_tilt_by_theta_tilt_by_length_tilt = (2.0 * math.pi * N_tilt * lead_tilt_inverse
+        * length_tilt_by_theta_tilt * length_tilt_inverse_cubed * ratio_tilt_by_N_tilt_term
+        - ratio_tilt_by_theta_tilt_by_theta_tilt_term)
+    ratio_tilt_by_theta_tilt_by_theta_tilt = (length_tilt_by_theta_tilt
+        * ratio_tilt_by_theta_tilt_by_length_tilt - length_tilt_by_theta_tilt
+        * ratio_tilt_by_theta_tilt_by_theta_tilt_term + length_tilt_by_theta_tilt_by_theta_tilt
+        * ratio_tilt_by_length_tilt - ratio_tilt)
+    force_tilt_by_ratio_tilt = (-J_motor_tilt * omega_tilt_sq_ratio_tilt_by_theta_tilt
+        + K_t_tilt * i_tilt - 2.0 * b_motor_tilt_omega_tilt_ratio_tilt)
+    J_motor_tilt_ratio_tilt = J_motor_tilt * ratio_tilt
+    J_motor_tilt_ratio_tilt_omega_tilt_sq = J_motor_tilt_ratio_tilt * omega_tilt_sq
+    driving_torque_tilt_by_theta_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
+        * ratio_tilt_by_theta_tilt_by_theta_tilt + force_tilt_by_ratio_tilt
+        * ratio_tilt_by_theta_tilt)
+    follower_inertia_tilt_by_theta_tilt = (cos_tilt_inertia_pan_per_sin_tilt
+        + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt)
+    load_inertia_tilt_by_follower_coupling_tilt = -2.0 * mass_pan_inverse_mass_pan_tilt
+    mass_pan_inverse_sq = 1.0 / (mass_pan * mass_pan)
+    load_inertia_tilt_by_follower_inertia_tilt = mass_pan_inverse_sq * mass_pan_tilt_sq
+    load_inertia_tilt_by_theta_tilt = (follower_coupling_tilt_by_theta_tilt
+        * load_inertia_tilt_by_follower_coupling_tilt + follower_inertia_tilt_by_theta_tilt
+        * load_inertia_tilt_by_follower_inertia_tilt)
+    gravity_cos_tilt_sin_tilt = gravity_cos_tilt * sin_tilt
+    load_torque_tilt_by_theta_tilt_term = (coriolis_by_theta_tilt * force_tilt_by_coriolis
+        + cos_tilt * gravity_sin_tilt - gravity_cos_tilt_sin_tilt)
+    load_torque_tilt_by_follower_coupling_tilt = -force_pan * mass_pan_inverse
+    load_torque_tilt_by_follower_inertia_tilt = force_pan * mass_pan_inverse_sq * mass_pan_tilt
+    load_torque_tilt_by_theta_tilt = (accel_pan_by_theta_tilt_term * mass_pan_inverse_mass_pan_tilt
+        + follower_coupling_tilt_by_theta_tilt * load_torque_tilt_by_follower_coupling_tilt
+        + follower_inertia_tilt_by_theta_tilt * load_torque_tilt_by_follower_inertia_tilt
+        + load_torque_tilt_by_theta_tilt_term)
+    twice_J_motor_tilt_ratio_tilt = 2.0 * J_motor_tilt_ratio_tilt
+    carried_tilt_by_ratio_tilt = -load_torque_tilt * twice_J_motor_tilt_ratio_tilt
+    carried_tilt_by_theta_tilt = (-J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_tilt
+        + carried_tilt_by_ratio_tilt * ratio_tilt_by_theta_tilt
+        + driving_torque_tilt * load_inertia_tilt_by_theta_tilt
+        + driving_torque_tilt_by_theta_tilt * load_inertia_tilt)
+    lost_lowering_tilt_by_theta_tilt_term = (one_minus_lowered_tilt * (0.0
+        if lost_lowering_tilt_term == 0 else math.copysign(1, lost_lowering_tilt_term))
+        / (lost_lowering_tilt_term * lost_lowering_tilt_term))
+    lost_lowering_tilt_by_load_inertia_tilt = -lost_lowering_tilt_by_theta_tilt_term * lowered_tilt
+    lost_lowering_tilt_by_ratio_tilt = (-lost_lowering_tilt_by_theta_tilt_term
+        * twice_J_motor_tilt_ratio_tilt)
+    lost_lowering_tilt_by_theta_tilt = (load_inertia_tilt_by_theta_tilt
+        * lost_lowering_tilt_by_load_inertia_tilt + lost_lowering_tilt_by_ratio_tilt
+        * ratio_tilt_by_theta_tilt)
+    lost_raising_tilt_by_theta_tilt_term = (raised_tilt_minus_one / (lost_raising_tilt_term
+        * lost_raising_tilt_term))
+    lost_raising_tilt_by_load_inertia_tilt = -lost_raising_tilt_by_theta_tilt_term * raised_tilt
+    lost_raising_tilt_by_ratio_tilt = (-lost_raising_tilt_by_theta_tilt_term
+        * twice_J_motor_tilt_ratio_tilt)
+    lost_raising_tilt_by_theta_tilt = (load_inertia_tilt_by_theta_tilt
+        * lost_raising_tilt_by_load_inertia_tilt + lost_raising_tilt_by_ratio_tilt
+        * ratio_tilt_by_theta_tilt)
+    accel_tilt_twice_J_motor_tilt_ratio_tilt = accel_tilt * twice_J_motor_tilt_ratio_tilt
+    accel_pan_by_theta_tilt_term_2 = accel_pan * follower_coupling_tilt_by_theta_tilt
+    half_carried_tilt_slide_tilt = 0.5 * carried_tilt_slide_tilt
+    force_tilt_by_lost_lowering_tilt = (-slide_tilt * (0.5 * abs_carried_tilt_slide_tilt
+        - half_carried_tilt_slide_tilt))
+    force_tilt_by_lost_raising_tilt = (-slide_tilt * (half_abs_carried_tilt_slide_tilt
+        + half_carried_tilt_slide_tilt))
+    balance_tilt_by_theta_tilt = (-accel_pan_by_theta_tilt_term_2
+        - accel_tilt_twice_J_motor_tilt_ratio_tilt * ratio_tilt_by_theta_tilt
+        + carried_tilt_by_theta_tilt * force_tilt_by_carried_tilt
+        + driving_torque_tilt_by_theta_tilt
+        + force_tilt_by_lost_lowering_tilt * lost_lowering_tilt_by_theta_tilt
+        + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_theta_tilt
+        + load_torque_tilt_by_theta_tilt_term)
+    accel_pan_by_theta_tilt = (inverse_determinant * (balance_pan_by_theta_tilt * mass_tilt
+        - balance_tilt_by_theta_tilt * mass_pan_tilt_slide_tilt_sq))
+    fx[2, 1] = accel_pan_by_theta_tilt
+    # accel_tilt_by_theta_tilt
+    fx[3, 1] = (inverse_determinant_slide_tilt_sq * (-balance_pan_by_theta_tilt
+        * mass_pan_tilt_slide_tilt_sq + balance_tilt_by_theta_tilt * mass_pan))
+    rate_of_i_tilt_by_u_tilt = 1.0 / L_tilt
+    rate_of_i_tilt_by_theta_tilt_term = K_t_tilt * omega_tilt * rate_of_i_tilt_by_u_tilt
+    # rate_of_i_tilt_by_theta_tilt
+    fx[7, 1] = -rate_of_i_tilt_by_theta_tilt_term * ratio_tilt_by_theta_tilt
+    fx[0, 2] = 1.0  # rate_of_theta_pan_by_omega_pan
+    follower_torque_tilt_by_omega_gear_pan = active_pan * d_shaft_pan
+    follower_torque_tilt_by_omega_pan = (-b_pan - coriolis_by_omega_pan * omega_tilt
+        - follower_torque_tilt_by_omega_gear_pan)
+    half_coriolis = 0.5 * coriolis
+    load_torque_tilt_by_omega_pan_term = (coriolis_by_omega_pan * force_tilt_by_coriolis
+        + half_coriolis)
+    load_torque_tilt_by_omega_pan = (-follower_torque_tilt_by_omega_pan
+        * mass_pan_inverse_mass_pan_tilt + load_torque_tilt_by_omega_pan_term)
+    carried_tilt_by_omega_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_pan
+    balance_tilt_by_omega_pan = (carried_tilt_by_omega_pan * force_tilt_by_carried_tilt
+        + load_torque_tilt_by_omega_pan_term)
+    accel_pan_by_omega_pan = (inverse_determinant * (-balance_tilt_by_omega_pan
+        * mass_pan_tilt_slide_tilt_sq + follower_torque_tilt_by_omega_pan * mass_tilt))
+    fx[2, 2] = accel_pan_by_omega_pan
+    # accel_tilt_by_omega_pan
+    fx[3, 2] = (inverse_determinant_slide_tilt_sq * (balance_tilt_by_omega_pan * mass_pan
+        - follower_torque_tilt_by_omega_pan * mass_pan_tilt_slide_tilt_sq))
+    # accel_gear_pan_by_omega_pan
+    fx[5, 2] = follower_torque_tilt_by_omega_gear_pan * inverse_mass_gear_pan_slide_pan_sq
+    fx[1, 3] = 1.0  # rate_of_theta_tilt_by_omega_tilt
+    follower_torque_tilt_by_omega_tilt = -coriolis - 2.0 * force_pan_term
+    carried_tilt_by_omega_tilt_term = (2.0 * J_motor_tilt * omega_tilt_ratio_tilt
+        * ratio_tilt_by_theta_tilt + b_motor_tilt * ratio_tilt_sq)
+    load_torque_tilt_by_omega_tilt = (-b_tilt
+        - follower_torque_tilt_by_omega_tilt * mass_pan_inverse_mass_pan_tilt)
+    carried_tilt_by_omega_tilt = (-J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_tilt
+        - carried_tilt_by_omega_tilt_term * load_inertia_tilt)
+    accel_pan_by_omega_tilt_term = b_tilt + carried_tilt_by_omega_tilt_term
+    balance_tilt_by_omega_tilt = (-accel_pan_by_omega_tilt_term
+        + carried_tilt_by_omega_tilt * force_tilt_by_carried_tilt)
+    accel_pan_by_omega_tilt = (inverse_determinant * (-balance_tilt_by_omega_tilt
+        * mass_pan_tilt_slide_tilt_sq + follower_torque_tilt_by_omega_tilt * mass_tilt))
+    fx[2, 3] = accel_pan_by_omega_tilt
+    # accel_tilt_by_omega_tilt
+    fx[3, 3] = (inverse_determinant_slide_tilt_sq * (balance_tilt_by_omega_tilt * mass_pan
+        - follower_torque_tilt_by_omega_tilt * mass_pan_tilt_slide_tilt_sq))
+    driving_torque_tilt_by_i_tilt = K_t_tilt * ratio_tilt
+    # rate_of_i_tilt_by_omega_tilt
+    fx[7, 3] = -driving_torque_tilt_by_i_tilt * rate_of_i_tilt_by_u_tilt
+    fx[2, 4] = accel_pan_by_theta_gear_pan
+    fx[3, 4] = accel_tilt_by_theta_gear_pan
+    fx[5, 4] = accel_gear_pan_by_theta_gear_pan
+    load_torque_tilt_by_omega_gear_pan = (-follower_torque_tilt_by_omega_gear_pan
+        * mass_pan_inverse_mass_pan_tilt)
+    carried_tilt_by_omega_gear_pan = (-J_motor_tilt_ratio_tilt_sq
+        * load_torque_tilt_by_omega_gear_pan)
+    balance_tilt_by_omega_gear_pan = carried_tilt_by_omega_gear_pan * force_tilt_by_carried_tilt
+    accel_pan_by_omega_gear_pan = (inverse_determinant * (-balance_tilt_by_omega_gear_pan
+        * mass_pan_tilt_slide_tilt_sq + follower_torque_tilt_by_omega_gear_pan * mass_tilt))
+    fx[2, 5] = accel_pan_by_omega_gear_pan
+    # accel_tilt_by_omega_gear_pan
+    fx[3, 5] = (inverse_determinant_slide_tilt_sq * (balance_tilt_by_omega_gear_pan * mass_pan
+        - follower_torque_tilt_by_omega_gear_pan * mass_pan_tilt_slide_tilt_sq))
+    fx[4, 5] = 1.0  # rate_of_theta_gear_pan_by_omega_gear_pan
+    v_s_pan_inverse_sq = 1.0 / (v_s_pan * v_s_pan)
+    one_plus_a_v_s_pan_slide_pan = a_v_s_pan * slide_pan + 1.0
+    one_plus_a_v_s_pan_slide_pan_inverse_sq = (1.0 / (one_plus_a_v_s_pan_slide_pan
+        * one_plus_a_v_s_pan_slide_pan))
+    stribeck_square_pan_term = one_plus_a_v_s_pan_slide_pan_inverse_sq * v_s_pan_inverse_sq
+    one_plus_a_F_c_pan_slide_pan = a_F_c_pan * slide_pan + 1.0
+    coulomb_torque_pan = F_c_pan * one_plus_a_F_c_pan_slide_pan
+    one_plus_a_F_s_pan_slide_pan = a_F_s_pan * slide_pan + 1.0
+    omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
+    stribeck_square_pan = omega_gear_pan_sq * stribeck_square_pan_term
+    exp_minus_stribeck_square_pan = math.exp(-stribeck_square_pan)
+    accel_gear_pan_by_omega_gear_pan_term = (exp_minus_stribeck_square_pan * (F_s_pan
+        * one_plus_a_F_s_pan_slide_pan - coulomb_torque_pan))
+    accel_gear_pan_by_omega_gear_pan_term_2 = 2.0 * accel_gear_pan_by_omega_gear_pan_term
+    one_plus_a_F_v_pan_slide_pan = a_F_v_pan * slide_pan + 1.0
+    viscous_coefficient_pan = F_v_pan * one_plus_a_F_v_pan_slide_pan
+    # accel_gear_pan_by_omega_gear_pan
+    fx[5, 5] = (inverse_mass_gear_pan_slide_pan_sq * (-follower_torque_tilt_by_omega_gear_pan
+        - slide_pan * (-accel_gear_pan_by_omega_gear_pan_term_2 * omega_gear_pan
+        * stribeck_square_pan_term + slide_pan * viscous_coefficient_pan)))
+    rate_of_i_pan_by_u_pan = 1.0 / L_pan
+    balance_gear_pan_by_i_pan = K_t_pan * N_pan
+    # rate_of_i_pan_by_omega_gear_pan
+    fx[6, 5] = -balance_gear_pan_by_i_pan * rate_of_i_pan_by_u_pan
+    # accel_gear_pan_by_i_pan
+    fx[5, 6] = balance_gear_pan_by_i_pan * inverse_mass_gear_pan_slide_pan_sq
+    fx[6, 6] = -R_pan * rate_of_i_pan_by_u_pan  # rate_of_i_pan_by_i_pan
+    accel_pan_by_i_tilt_term = inverse_determinant * mass_pan_tilt_slide_tilt_sq
+    carried_tilt_by_i_tilt = driving_torque_tilt_by_i_tilt * load_inertia_tilt
+    balance_tilt_by_i_tilt = (carried_tilt_by_i_tilt * force_tilt_by_carried_tilt
+        + driving_torque_tilt_by_i_tilt)
+    accel_pan_by_i_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_i_tilt
+    fx[2, 7] = accel_pan_by_i_tilt
+    accel_tilt_by_i_tilt_term = inverse_determinant_slide_tilt_sq * mass_pan
+    fx[3, 7] = accel_tilt_by_i_tilt_term * balance_tilt_by_i_tilt  # accel_tilt_by_i_tilt
+    fx[7, 7] = -R_tilt * rate_of_i_tilt_by_u_tilt  # rate_of_i_tilt_by_i_tilt
+    fu[6, 0] = rate_of_i_pan_by_u_pan
+    fu[7, 1] = rate_of_i_tilt_by_u_tilt
+    if len(fp) == 0:
+        return
+    carried_tilt_by_inertia_pan = (-J_motor_tilt_ratio_tilt_sq
+        * load_torque_tilt_by_follower_inertia_tilt + driving_torque_tilt
+        * load_inertia_tilt_by_follower_inertia_tilt)
+    lost_lowering_tilt_by_inertia_pan = (load_inertia_tilt_by_follower_inertia_tilt
+        * lost_lowering_tilt_by_load_inertia_tilt)
+    lost_raising_tilt_by_inertia_pan = (load_inertia_tilt_by_follower_inertia_tilt
+        * lost_raising_tilt_by_load_inertia_tilt)
+    balance_tilt_by_inertia_pan = (carried_tilt_by_inertia_pan * force_tilt_by_carried_tilt
+        + force_tilt_by_lost_lowering_tilt * lost_lowering_tilt_by_inertia_pan
+        + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_inertia_pan)
+    accel_pan_by_inertia_pan = (inverse_determinant * (-accel_pan * mass_tilt
+        - balance_tilt_by_inertia_pan * mass_pan_tilt_slide_tilt_sq))
+    fp[2, 0] = accel_pan_by_inertia_pan  # accel_pan_by_J_pan
+    accel_tilt_by_inertia_pan = (inverse_determinant_slide_tilt_sq * (accel_pan
+        * mass_pan_tilt_slide_tilt_sq + balance_tilt_by_inertia_pan * mass_pan))
+    fp[3, 0] = accel_tilt_by_inertia_pan  # accel_tilt_by_J_pan
+    coriolis_by_inertia_pan_sin_sq_tilt = coriolis_by_inertia_pan_per_sin_tilt * sin_tilt
+    accel_pan_by_inertia_pan_sin_sq_tilt_term = coriolis_by_inertia_pan_sin_sq_tilt * omega_tilt
+    accel_pan_sin_tilt = accel_pan * sin_tilt
+    balance_pan_by_inertia_pan_sin_sq_tilt = (-accel_pan_by_inertia_pan_sin_sq_tilt_term
+        - accel_pan_sin_tilt * sin_tilt)
+    follower_inertia_tilt_by_inertia_pan_sin_sq_tilt = sin_tilt * sin_tilt
+    load_inertia_tilt_by_inertia_pan_sin_sq_tilt = (follower_inertia_tilt_by_inertia_pan_sin_sq_tilt
+        * load_inertia_tilt_by_follower_inertia_tilt)
+    load_torque_tilt_by_inertia_pan_sin_sq_tilt_term = (coriolis_by_inertia_pan_sin_sq_tilt
+        * force_tilt_by_coriolis)
+    load_torque_tilt_by_inertia_pan_sin_sq_tilt = (accel_pan_by_inertia_pan_sin_sq_tilt_term
+        * mass_pan_inverse_mass_pan_tilt + follower_inertia_tilt_by_inertia_pan_sin_sq_tilt
+        * load_torque_tilt_by_follower_inertia_tilt
+        + load_torque_tilt_by_inertia_pan_sin_sq_tilt_term)
+    carried_tilt_by_inertia_pan_sin_sq_tilt = (-J_motor_tilt_ratio_tilt_sq
+        * load_torque_tilt_by_inertia_pan_sin_sq_tilt + driving_torque_tilt
+        * load_inertia_tilt_by_inertia_pan_sin_sq_tilt)
+    lost_lowering_tilt_by_inertia_pan_sin_sq_tilt = (load_inertia_tilt_by_inertia_pan_sin_sq_tilt
+        * lost_lowering_tilt_by_load_inertia_tilt)
+    lost_raising_tilt_by_inertia_pan_sin_sq_tilt = (load_inertia_tilt_by_inertia_pan_sin_sq_tilt
+        * lost_raising_tilt_by_load_inertia_tilt)
+    balance_tilt_by_inertia_pan_sin_sq_tilt = (carried_tilt_by_inertia_pan_sin_sq_tilt
+        * force_tilt_by_carried_tilt + force_tilt_by_lost_lowering_tilt
+        * lost_lowering_tilt_by_inertia_pan_sin_sq_tilt + force_tilt_by_lost_raising_tilt
+        * lost_raising_tilt_by_inertia_pan_sin_sq_tilt
+        + load_torque_tilt_by_inertia_pan_sin_sq_tilt_term)
+    accel_pan_by_inertia_pan_sin_sq_tilt = (inverse_determinant
+        * (balance_pan_by_inertia_pan_sin_sq_tilt * mass_tilt
+        - balance_tilt_by_inertia_pan_sin_sq_tilt * mass_pan_tilt_slide_tilt_sq))
+    fp[2, 1] = accel_pan_by_inertia_pan_sin_sq_tilt  # accel_pan_by_J_x_tilt
+    accel_tilt_by_inertia_pan_sin_sq_tilt = (inverse_determinant_slide_tilt_sq
+        * (-balance_pan_by_inertia_pan_sin_sq_tilt * mass_pan_tilt_slide_tilt_sq
+        + balance_tilt_by_inertia_pan_sin_sq_tilt * mass_pan))
+    fp[3, 1] = accel_tilt_by_inertia_pan_sin_sq_tilt  # accel_tilt_by_J_x_tilt
+    balance_tilt_by_inertia_tilt = (-accel_tilt + driving_torque_tilt * force_tilt_by_carried_tilt
+        + force_tilt_by_lost_lowering_tilt * lost_lowering_tilt_by_load_inertia_tilt
+        + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_load_inertia_tilt)
+    accel_pan_by_inertia_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_inertia_tilt
+    fp[2, 2] = accel_pan_by_inertia_tilt  # accel_pan_by_J_y_tilt
+    accel_tilt_by_inertia_tilt = accel_tilt_by_i_tilt_term * balance_tilt_by_inertia_tilt
+    fp[3, 2] = accel_tilt_by_inertia_tilt  # accel_tilt_by_J_y_tilt
+    accel_pan_by_J_z_tilt = accel_pan_by_inertia_pan - accel_pan_by_inertia_pan_sin_sq_tilt
+    fp[2, 3] = accel_pan_by_J_z_tilt
+    accel_tilt_by_J_z_tilt = accel_tilt_by_inertia_pan - accel_tilt_by_inertia_pan_sin_sq_tilt
+    fp[3, 3] = accel_tilt_by_J_z_tilt
+    follower_torque_tilt_by_coupling_cos_tilt = -omega_tilt_sq * sin_tilt
+    balance_pan_by_coupling_cos_tilt = (accel_tilt * cos_tilt
+        + follower_torque_tilt_by_coupling_cos_tilt)
+    load_inertia_tilt_by_coupling_cos_tilt = -cos_tilt * load_inertia_tilt_by_follower_coupling_tilt
+    load_torque_tilt_by_coupling_cos_tilt = (-cos_tilt * load_torque_tilt_by_follower_coupling_tilt
+        - follower_torque_tilt_by_coupling_cos_tilt * mass_pan_inverse_mass_pan_tilt)
+    carried_tilt_by_coupling_cos_tilt = (-J_motor_tilt_ratio_tilt_sq
+        * load_torque_tilt_by_coupling_cos_tilt + driving_torque_tilt
+        * load_inertia_tilt_by_coupling_cos_tilt)
+    lost_lowering_tilt_by_coupling_cos_tilt = (load_inertia_tilt_by_coupling_cos_tilt
+        * lost_lowering_tilt_by_load_inertia_tilt)
+    lost_raising_tilt_by_coupling_cos_tilt = (load_inertia_tilt_by_coupling_cos_tilt
+        * lost_raising_tilt_by_load_inertia_tilt)
+    accel_pan_cos_tilt = accel_pan * cos_tilt
+    balance_tilt_by_coupling_cos_tilt = (accel_pan_cos_tilt
+        + carried_tilt_by_coupling_cos_tilt * force_tilt_by_carried_tilt
+        + force_tilt_by_lost_lowering_tilt * lost_lowering_tilt_by_coupling_cos_tilt
+        + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_coupling_cos_tilt)
+    accel_pan_by_coupling_cos_tilt = (inverse_determinant * (balance_pan_by_coupling_cos_tilt
+        * mass_tilt - balance_tilt_by_coupling_cos_tilt * mass_pan_tilt_slide_tilt_sq))
+    cos_tilt_omega_tilt_sq = cos_tilt * omega_tilt_sq
+    balance_pan_by_coupling_sin_tilt = -accel_tilt * sin_tilt - cos_tilt_omega_tilt_sq
+    load_inertia_tilt_by_coupling_sin_tilt = load_inertia_tilt_by_follower_coupling_tilt * sin_tilt
+    load_torque_tilt_by_coupling_sin_tilt = (cos_tilt_omega_tilt_sq * mass_pan_inverse_mass_pan_tilt
+        + load_torque_tilt_by_follower_coupling_tilt * sin_tilt)
+    carried_tilt_by_coupling_sin_tilt = (-J_motor_tilt_ratio_tilt_sq
+        * load_torque_tilt_by_coupling_sin_tilt + driving_torque_tilt
+        * load_inertia_tilt_by_coupling_sin_tilt)
+    lost_lowering_tilt_by_coupling_sin_tilt = (load_inertia_tilt_by_coupling_sin_tilt
+        * lost_lowering_tilt_by_load_inertia_tilt)
+    lost_raising_tilt_by_coupling_sin_tilt = (load_inertia_tilt_by_coupling_sin_tilt
+        * lost_raising_tilt_by_load_inertia_tilt)
+    balance_tilt_by_coupling_sin_tilt = (-accel_pan_sin_tilt
+        + carried_tilt_by_coupling_sin_tilt * force_tilt_by_carried_tilt
+        + force_tilt_by_lost_lowering_tilt * lost_lowering_tilt_by_coupling_sin_tilt
+        + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_coupling_sin_tilt)
+    accel_pan_by_coupling_sin_tilt = (inverse_determinant * (balance_pan_by_coupling_sin_tilt
+        * mass_tilt - balance_tilt_by_coupling_sin_tilt * mass_pan_tilt_slide_tilt_sq))
+    carried_tilt_by_gravity_cos_tilt = -J_motor_tilt_ratio_tilt_sq * cos_tilt
+    balance_tilt_by_gravity_cos_tilt = (carried_tilt_by_gravity_cos_tilt
+        * force_tilt_by_carried_tilt + cos_tilt)
+    accel_pan_by_gravity_cos_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_gravity_cos_tilt
+    carried_tilt_by_gravity_sin_tilt = -J_motor_tilt_ratio_tilt_sq * sin_tilt
+    balance_tilt_by_gravity_sin_tilt = (carried_tilt_by_gravity_sin_tilt
+        * force_tilt_by_carried_tilt + sin_tilt)
+    accel_pan_by_gravity_sin_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_gravity_sin_tilt
+    coriolis_by_inertia_pan_sin_cos_tilt = (coriolis_by_inertia_pan_per_sin_tilt * cos_tilt
+        - omega_pan)
+    accel_pan_by_inertia_pan_sin_cos_tilt_term = coriolis_by_inertia_pan_sin_cos_tilt * omega_tilt
+    balance_pan_by_inertia_pan_sin_cos_tilt = (-accel_pan_by_inertia_pan_sin_cos_tilt_term
+        - accel_pan_sin_tilt * cos_tilt)
+    follower_inertia_tilt_by_inertia_pan_sin_cos_tilt = cos_tilt * sin_tilt
+    load_inertia_tilt_by_inertia_pan_sin_cos_tilt = (
+        follower_inertia_tilt_by_inertia_pan_sin_cos_tilt
+        * load_inertia_tilt_by_follower_inertia_tilt)
+    load_torque_tilt_by_inertia_pan_sin_cos_tilt_term = (coriolis_by_inertia_pan_sin_cos_tilt
+        * force_tilt_by_coriolis)
+    load_torque_tilt_by_inertia_pan_sin_cos_tilt = (accel_pan_by_inertia_pan_sin_cos_tilt_term
+        * mass_pan_inverse_mass_pan_tilt + follower_inertia_tilt_by_inertia_pan_sin_cos_tilt
+        * load_torque_tilt_by_follower_inertia_tilt
+        + load_torque_tilt_by_inertia_pan_sin_cos_tilt_term)
+    carried_tilt_by_inertia_pan_sin_cos_tilt = (-J_motor_tilt_ratio_tilt_sq
+        * load_torque_tilt_by_inertia_pan_sin_cos_tilt + driving_torque_tilt
+        * load_inertia_tilt_by_inertia_pan_sin_cos_tilt)
+    lost_lowering_tilt_by_inertia_pan_sin_cos_tilt = (load_inertia_tilt_by_inertia_pan_sin_cos_tilt
+        * lost_lowering_tilt_by_load_inertia_tilt)
+    lost_raising_tilt_by_inertia_pan_sin_cos_tilt = (load_inertia_tilt_by_inertia_pan_sin_cos_tilt
+        * lost_raising_tilt_by_load_inertia_tilt)
+    balance_tilt_by_inertia_pan_sin_cos_tilt = (carried_tilt_by_inertia_pan_sin_cos_tilt
+        * force_tilt_by_carried_tilt + force_tilt_by_lost_lowering_tilt
+        * lost_lowering_tilt_by_inertia_pan_sin_cos_tilt + force_tilt_by_lost_raising_tilt
+        * lost_raising_tilt_by_inertia_pan_sin_cos_tilt
+        + load_torque_tilt_by_inertia_pan_sin_cos_tilt_term)
+    accel_pan_by_inertia_pan_sin_cos_tilt = (inverse_determinant
+        * (balance_pan_by_inertia_pan_sin_cos_tilt * mass_tilt
+        - balance_tilt_by_inertia_pan_sin_cos_tilt * mass_pan_tilt_slide_tilt_sq))
+    coupling_cos_tilt_by_m_payload = c_y_payload * c_z_payload
+    coupling_sin_tilt_by_m_payload = c_x_payload * c_y_payload
+    gravity_cos_tilt_by_m_payload = c_x_payload * gravity
+    gravity_sin_tilt_by_m_payload = c_z_payload * gravity
+    inertia_pan_by_m_payload = c_x_payload_sq + c_y_payload_sq
+    inertia_pan_sin_cos_tilt_by_m_payload = 2.0 * c_x_payload * c_z_payload
+    inertia_pan_sin_sq_tilt_by_m_payload = -c_x_payload_sq + c_z_payload_sq
+    inertia_tilt_by_m_payload = c_x_payload_sq + c_z_payload_sq
+    accel_pan_by_m_payload = (accel_pan_by_coupling_cos_tilt * coupling_cos_tilt_by_m_payload
+        + accel_pan_by_coupling_sin_tilt * coupling_sin_tilt_by_m_payload
+        + accel_pan_by_gravity_cos_tilt * gravity_cos_tilt_by_m_payload
+        + accel_pan_by_gravity_sin_tilt * gravity_sin_tilt_by_m_payload
+        + accel_pan_by_inertia_pan * inertia_pan_by_m_payload
+        + accel_pan_by_inertia_pan_sin_cos_tilt * inertia_pan_sin_cos_tilt_by_m_payload
+        + accel_pan_by_inertia_pan_sin_sq_tilt * inertia_pan_sin_sq_tilt_by_m_payload
+        + accel_pan_by_inertia_tilt * inertia_tilt_by_m_payload)
+    fp[2, 4] = accel_pan_by_m_payload
+    accel_tilt_by_coupling_cos_tilt = (inverse_determinant_slide_tilt_sq
+        * (-balance_pan_by_coupling_cos_tilt * mass_pan_tilt_slide_tilt_sq
+        + balance_tilt_by_coupling_cos_tilt * mass_pan))
+    accel_tilt_by_coupling_sin_tilt = (inverse_determinant_slide_tilt_sq
+        * (-balance_pan_by_coupling_sin_tilt * mass_pan_tilt_slide_tilt_sq
+        + balance_tilt_by_coupling_sin_tilt * mass_pan))
+    accel_tilt_by_gravity_cos_tilt = accel_tilt_by_i_tilt_term * balance_tilt_by_gravity_cos_tilt
+    accel_tilt_by_gravity_sin_tilt = accel_tilt_by_i_tilt_term * balance_tilt_by_gravity_sin_tilt
+    accel_tilt_by_inertia_pan_sin_cos_tilt = (inverse_determinant_slide_tilt_sq
+        * (-balance_pan_by_inertia_pan_sin_cos_tilt * mass_pan_tilt_slide_tilt_sq
+        + balance_tilt_by_inertia_pan_sin_cos_tilt * mass_pan))
+    fp[3, 4] = (accel_tilt_by_coupling_cos_tilt * coupling_cos_tilt_by_m_payload
+        + accel_tilt_by_coupling_sin_tilt * coupling_sin_tilt_by_m_payload
+        + accel_tilt_by_gravity_cos_tilt * gravity_cos_tilt_by_m_payload
+        + accel_tilt_by_gravity_sin_tilt * gravity_sin_tilt_by_m_payload
+        + accel_tilt_by_inertia_pan * inertia_pan_by_m_payload
+        + accel_tilt_by_inertia_pan_sin_cos_tilt * inertia_pan_sin_cos_tilt_by_m_payload
+        + accel_tilt_by_inertia_pan_sin_sq_tilt * inertia_pan_sin_sq_tilt_by_m_payload
+        + accel_tilt_by_inertia_tilt * inertia_tilt_by_m_payload)  # accel_tilt_by_m_payload
+    fp[2, 5] = accel_pan_by_inertia_pan_sin_sq_tilt  # accel_pan_by_J_x_payload
+    fp[3, 5] = accel_tilt_by_inertia_pan_sin_sq_tilt  # accel_tilt_by_J_x_payload
+    fp[2, 6] = accel_pan_by_inertia_tilt  # accel_pan_by_J_y_payload
+    fp[3, 6] = accel_tilt_by_inertia_tilt  # accel_tilt_by_J_y_payload
+    fp[2, 7] = accel_pan_by_J_z_tilt  # accel_pan_by_J_z_payload
+    fp[3, 7] = accel_tilt_by_J_z_tilt  # accel_tilt_by_J_z_payload
+    gravity_cos_tilt_by_gravity = c_x_payload * m_payload
+    inertia_pan_by_c_x_payload = 2.0 * gravity_cos_tilt_by_gravity
+    accel_pan_by_c_x_payload = (accel_pan_by_coupling_sin_tilt * coupling_sin_tilt_by_c_x_payload
+        + accel_pan_by_gravity_cos_tilt * gravity_cos_tilt_by_c_x_payload
+        + accel_pan_by_inertia_pan * inertia_pan_by_c_x_payload
+        + accel_pan_by_inertia_pan_sin_cos_tilt * inertia_tilt_by_c_z_payload
+        - accel_pan_by_inertia_pan_sin_sq_tilt * inertia_pan_by_c_x_payload
+        + accel_pan_by_inertia_tilt * inertia_pan_by_c_x_payload)
+    fp[2, 8] = accel_pan_by_c_x_payload
+    fp[3, 8] = (accel_tilt_by_coupling_sin_tilt * coupling_sin_tilt_by_c_x_payload
+        + accel_tilt_by_gravity_cos_tilt * gravity_cos_tilt_by_c_x_payload
+        + accel_tilt_by_inertia_pan * inertia_pan_by_c_x_payload
+        + accel_tilt_by_inertia_pan_sin_cos_tilt * inertia_tilt_by_c_z_payload
+        - accel_tilt_by_inertia_pan_sin_sq_tilt * inertia_pan_by_c_x_payload
+        + accel_tilt_by_inertia_tilt * inertia_pan_by_c_x_payload)  # accel_tilt_by_c_x_payload
+    inertia_pan_by_c_y_payload = 2.0 * coupling_sin_tilt_by_c_x_payload
+    accel_pan_by_c_y_payload = (accel_pan_by_coupling_cos_tilt * gravity_sin_tilt_by_gravity
+        + accel_pan_by_coupling_sin_tilt * gravity_cos_tilt_by_gravity
+        + accel_pan_by_inertia_pan * inertia_pan_by_c_y_payload)
+    fp[2, 9] = accel_pan_by_c_y_payload
+    fp[3, 9] = (accel_tilt_by_coupling_cos_tilt * gravity_sin_tilt_by_gravity
+        + accel_tilt_by_coupling_sin_tilt * gravity_cos_tilt_by_gravity
+        + accel_tilt_by_inertia_pan * inertia_pan_by_c_y_payload)  # accel_tilt_by_c_y_payload
+    accel_pan_by_c_z_payload = (accel_pan_by_coupling_cos_tilt * coupling_sin_tilt_by_c_x_payload
+        + accel_pan_by_gravity_sin_tilt * gravity_cos_tilt_by_c_x_payload
+        + accel_pan_by_inertia_pan_sin_cos_tilt * inertia_pan_by_c_x_payload
+        + accel_pan_by_inertia_pan_sin_sq_tilt * inertia_tilt_by_c_z_payload
+        + accel_pan_by_inertia_tilt * inertia_tilt_by_c_z_payload)
+    fp[2, 10] = accel_pan_by_c_z_payload
+    fp[3, 10] = (accel_tilt_by_coupling_cos_tilt * coupling_sin_tilt_by_c_x_payload
+        + accel_tilt_by_gravity_sin_tilt * gravity_cos_tilt_by_c_x_payload
+        + accel_tilt_by_inertia_pan_sin_cos_tilt * inertia_pan_by_c_x_payload
+        + accel_tilt_by_inertia_pan_sin_sq_tilt * inertia_tilt_by_c_z_payload
+        + accel_tilt_by_inertia_tilt * inertia_tilt_by_c_z_payload)  # accel_tilt_by_c_z_payload
+    load_torque_tilt_by_b_pan = mass_pan_inverse_mass_pan_tilt * omega_pan
+    carried_tilt_by_b_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_b_pan
+    balance_tilt_by_b_pan = carried_tilt_by_b_pan * force_tilt_by_carried_tilt
+    accel_pan_by_b_pan = (inverse_determinant * (-balance_tilt_by_b_pan
+        * mass_pan_tilt_slide_tilt_sq - mass_tilt * omega_pan))
+    fp[2, 11] = accel_pan_by_b_pan
+    fp[3, 11] = (inverse_determinant_slide_tilt_sq * (balance_tilt_by_b_pan * mass_pan
+        + mass_pan_tilt_slide_tilt_sq * omega_pan))  # accel_tilt_by_b_pan
+    carried_tilt_by_b_tilt = J_motor_tilt_ratio_tilt_sq * omega_tilt
+    balance_tilt_by_b_tilt = carried_tilt_by_b_tilt * force_tilt_by_carried_tilt - omega_tilt
+    accel_pan_by_b_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_b_tilt
+    fp[2, 12] = accel_pan_by_b_tilt
+    fp[3, 12] = accel_tilt_by_i_tilt_term * balance_tilt_by_b_tilt  # accel_tilt_by_b_tilt
+    fp[5, 13] = (-inverse_mass_gear_pan_slide_pan_sq * slide_pan * (-exp_minus_stribeck_square_pan
+        * one_plus_a_F_c_pan_slide_pan + one_plus_a_F_c_pan_slide_pan))  # accel_gear_pan_by_F_c_pan
+    fp[5, 14] = (-exp_minus_stribeck_square_pan * inverse_mass_gear_pan_slide_pan_sq
+        * one_plus_a_F_s_pan_slide_pan * slide_pan)  # accel_gear_pan_by_F_s_pan
+    accel_gear_pan_by_v_s_pan_term = accel_gear_pan_by_omega_gear_pan_term_2 * omega_gear_pan_sq
+    # accel_gear_pan_by_v_s_pan
+    fp[5, 15] = (-accel_gear_pan_by_v_s_pan_term * inverse_mass_gear_pan_slide_pan_sq
+        * one_plus_a_v_s_pan_slide_pan_inverse_sq * slide_pan / (v_s_pan * v_s_pan * v_s_pan))
+    fp[5, 16] = (-inverse_mass_gear_pan_slide_pan_sq * omega_gear_pan * one_plus_a_F_v_pan_slide_pan
+        * slide_pan_sq)  # accel_gear_pan_by_F_v_pan
+    F_c_pan_slide_pan = F_c_pan * slide_pan
+    fp[5, 17] = (-inverse_mass_gear_pan_slide_pan_sq * slide_pan * (-F_c_pan_slide_pan
+        * exp_minus_stribeck_square_pan + F_c_pan_slide_pan))  # accel_gear_pan_by_a_F_c_pan
+    fp[5, 18] = (-F_s_pan * exp_minus_stribeck_square_pan * inverse_mass_gear_pan_slide_pan_sq
+        * slide_pan_sq)  # accel_gear_pan_by_a_F_s_pan
+    fp[5, 19] = (-accel_gear_pan_by_v_s_pan_term * inverse_mass_gear_pan_slide_pan_sq * slide_pan_sq
+        * v_s_pan_inverse_sq / (one_plus_a_v_s_pan_slide_pan * one_plus_a_v_s_pan_slide_pan
+        * one_plus_a_v_s_pan_slide_pan))  # accel_gear_pan_by_a_v_s_pan
+    omega_gear_pan_slide_pan = omega_gear_pan * slide_pan
+    # accel_gear_pan_by_a_F_v_pan
+    fp[5, 20] = -F_v_pan * inverse_mass_gear_pan_slide_pan_sq * omega_gear_pan_slide_pan
+    balance_gear_pan_by_gap_pan = 0.5 * holding_pan_by_theta_pan * side_pan
+    load_torque_tilt_by_gap_pan = balance_gear_pan_by_gap_pan * mass_pan_inverse_mass_pan_tilt
+    carried_tilt_by_gap_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_gap_pan
+    balance_tilt_by_gap_pan = carried_tilt_by_gap_pan * force_tilt_by_carried_tilt
+    accel_pan_by_gap_pan = (inverse_determinant * (-balance_gear_pan_by_gap_pan * mass_tilt
+        - balance_tilt_by_gap_pan * mass_pan_tilt_slide_tilt_sq))
+    fp[2, 21] = accel_pan_by_gap_pan
+    # accel_tilt_by_gap_pan
+    fp[3, 21] = (inverse_determinant_slide_tilt_sq * (balance_gear_pan_by_gap_pan
+        * mass_pan_tilt_slide_tilt_sq + balance_tilt_by_gap_pan * mass_pan))
+    # accel_gear_pan_by_gap_pan
+    fp[5, 21] = balance_gear_pan_by_gap_pan * inverse_mass_gear_pan_slide_pan_sq
+    balance_gear_pan_by_k_shaft_pan = -active_pan * shaft_torque_pan_term
+    load_torque_tilt_by_k_shaft_pan = (balance_gear_pan_by_k_shaft_pan
+        * mass_pan_inverse_mass_pan_tilt)
+    carried_tilt_by_k_shaft_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_k_shaft_pan
+    balance_tilt_by_k_shaft_pan = carried_tilt_by_k_shaft_pan * force_tilt_by_carried_tilt
+    accel_pan_by_k_shaft_pan = (inverse_determinant * (-balance_gear_pan_by_k_shaft_pan * mass_tilt
+        - balance_tilt_by_k_shaft_pan * mass_pan_tilt_slide_tilt_sq))
+    fp[2, 22] = accel_pan_by_k_shaft_pan
+    # accel_tilt_by_k_shaft_pan
+    fp[3, 22] = (inverse_determinant_slide_tilt_sq * (balance_gear_pan_by_k_shaft_pan
+        * mass_pan_tilt_slide_tilt_sq + balance_tilt_by_k_shaft_pan * mass_pan))
+    # accel_gear_pan_by_k_shaft_pan
+    fp[5, 22] = balance_gear_pan_by_k_shaft_pan * inverse_mass_gear_pan_slide_pan_sq
+    balance_gear_pan_by_d_shaft_pan = -active_pan * upper_pan_by_d_shaft_pan
+    load_torque_tilt_by_d_shaft_pan = (balance_gear_pan_by_d_shaft_pan
+        * mass_pan_inverse_mass_pan_tilt)
+    carried_tilt_by_d_shaft_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_d_shaft_pan
+    balance_tilt_by_d_shaft_pan = carried_tilt_by_d_shaft_pan * force_tilt_by_carried_tilt
+    accel_pan_by_d_shaft_pan = (inverse_determinant * (-balance_gear_pan_by_d_shaft_pan * mass_tilt
+        - balance_tilt_by_d_shaft_pan * mass_pan_tilt_slide_tilt_sq))
+    fp[2, 23] = accel_pan_by_d_shaft_pan
+    # accel_tilt_by_d_shaft_pan
+    fp[3, 23] = (inverse_determinant_slide_tilt_sq * (balance_gear_pan_by_d_shaft_pan
+        * mass_pan_tilt_slide_tilt_sq + balance_tilt_by_d_shaft_pan * mass_pan))
+    # accel_gear_pan_by_d_shaft_pan
+    fp[5, 23] = balance_gear_pan_by_d_shaft_pan * inverse_mass_gear_pan_slide_pan_sq
+    fp[6, 24] = (-(-R_pan * i_pan - balance_gear_pan_by_i_pan * omega_gear_pan
+        + u_pan) / (L_pan * L_pan))  # rate_of_i_pan_by_L_pan
+    fp[6, 25] = -i_pan * rate_of_i_pan_by_u_pan  # rate_of_i_pan_by_R_pan
+    balance_gear_pan_by_K_t_pan = N_pan * i_pan
+    # accel_gear_pan_by_K_t_pan
+    fp[5, 26] = balance_gear_pan_by_K_t_pan * inverse_mass_gear_pan_slide_pan_sq
+    omega_gear_pan_rate_of_i_pan_by_u_pan = omega_gear_pan * rate_of_i_pan_by_u_pan
+    fp[6, 26] = -N_pan * omega_gear_pan_rate_of_i_pan_by_u_pan  # rate_of_i_pan_by_K_t_pan
+    force_gear_pan = (K_t_pan * N_pan * i_pan - shaft_torque_pan
+        - slide_pan * (accel_gear_pan_by_omega_gear_pan_term + coulomb_torque_pan
+        + omega_gear_pan_slide_pan * viscous_coefficient_pan))
+    accel_gear_pan = force_gear_pan * inverse_mass_gear_pan_slide_pan_sq
+    # accel_gear_pan_by_J_motor_pan
+    fp[5, 27] = -N_pan_sq * accel_gear_pan * inverse_mass_gear_pan_slide_pan_sq
+    fp[5, 28] = (inverse_mass_gear_pan_slide_pan_sq * (-2.0 * J_motor_pan * N_pan * accel_gear_pan
+        + K_t_pan * i_pan))  # accel_gear_pan_by_N_pan
+    fp[6, 28] = -K_t_pan * omega_gear_pan_rate_of_i_pan_by_u_pan  # rate_of_i_pan_by_N_pan
+    fp[7, 29] = (-(-R_tilt * i_tilt - driving_torque_tilt_by_i_tilt * omega_tilt
+        + u_tilt) / (L_tilt * L_tilt))  # rate_of_i_tilt_by_L_tilt
+    fp[7, 30] = -i_tilt * rate_of_i_tilt_by_u_tilt  # rate_of_i_tilt_by_R_tilt
+    driving_torque_tilt_by_K_t_tilt = i_tilt * ratio_tilt
+    carried_tilt_by_K_t_tilt = driving_torque_tilt_by_K_t_tilt * load_inertia_tilt
+    balance_tilt_by_K_t_tilt = (carried_tilt_by_K_t_tilt * force_tilt_by_carried_tilt
+        + driving_torque_tilt_by_K_t_tilt)
+    accel_pan_by_K_t_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_K_t_tilt
+    fp[2, 31] = accel_pan_by_K_t_tilt
+    fp[3, 31] = accel_tilt_by_i_tilt_term * balance_tilt_by_K_t_tilt  # accel_tilt_by_K_t_tilt
+    fp[7, 31] = -omega_tilt_ratio_tilt * rate_of_i_tilt_by_u_tilt  # rate_of_i_tilt_by_K_t_tilt
+    carried_tilt_by_J_motor_tilt = (-driving_torque_tilt_term * load_inertia_tilt
+        - load_torque_tilt * ratio_tilt_sq)
+    lost_lowering_tilt_by_J_motor_tilt = -lost_lowering_tilt_by_theta_tilt_term * ratio_tilt_sq
+    lost_raising_tilt_by_J_motor_tilt = -lost_raising_tilt_by_theta_tilt_term * ratio_tilt_sq
+    balance_tilt_by_J_motor_tilt = (-accel_tilt * ratio_tilt_sq
+        + carried_tilt_by_J_motor_tilt * force_tilt_by_carried_tilt - driving_torque_tilt_term
+        + force_tilt_by_lost_lowering_tilt * lost_lowering_tilt_by_J_motor_tilt
+        + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_J_motor_tilt)
+    accel_pan_by_J_motor_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_J_motor_tilt
+    fp[2, 32] = accel_pan_by_J_motor_tilt
+    # accel_tilt_by_J_motor_tilt
+    fp[3, 32] = accel_tilt_by_i_tilt_term * balance_tilt_by_J_motor_tilt
+    omega_tilt_ratio_tilt_sq = omega_tilt * ratio_tilt_sq
+    carried_tilt_by_b_motor_tilt = -load_inertia_tilt * omega_tilt_ratio_tilt_sq
+    balance_tilt_by_b_motor_tilt = (carried_tilt_by_b_motor_tilt * force_tilt_by_carried_tilt
+        - omega_tilt_ratio_tilt_sq)
+    accel_pan_by_b_motor_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_b_motor_tilt
+    fp[2, 33] = accel_pan_by_b_motor_tilt
+    # accel_tilt_by_b_motor_tilt
+    fp[3, 33] = accel_tilt_by_i_tilt_term * balance_tilt_by_b_motor_tilt
+    ratio_tilt_by_theta_tilt_by_N_tilt = (ratio_tilt_by_theta_tilt_term_2
+        - ratio_tilt_by_theta_tilt_term_5)
+    driving_torque_tilt_by_N_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
+        * ratio_tilt_by_theta_tilt_by_N_tilt + force_tilt_by_ratio_tilt * ratio_tilt_by_N_tilt)
+    carried_tilt_by_N_tilt = (carried_tilt_by_ratio_tilt * ratio_tilt_by_N_tilt
+        + driving_torque_tilt_by_N_tilt * load_inertia_tilt)
+    lost_lowering_tilt_by_N_tilt = lost_lowering_tilt_by_ratio_tilt * ratio_tilt_by_N_tilt
+    lost_raising_tilt_by_N_tilt = lost_raising_tilt_by_ratio_tilt * ratio_tilt_by_N_tilt
+    balance_tilt_by_N_tilt = (-accel_tilt_twice_J_motor_tilt_ratio_tilt * ratio_tilt_by_N_tilt
+        + carried_tilt_by_N_tilt * force_tilt_by_carried_tilt + driving_torque_tilt_by_N_tilt
+        + force_tilt_by_lost_lowering_tilt * lost_lowering_tilt_by_N_tilt
+        + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_N_tilt)
+    accel_pan_by_N_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_N_tilt
+    fp[2, 34] = accel_pan_by_N_tilt
+    fp[3, 34] = accel_tilt_by_i_tilt_term * balance_tilt_by_N_tilt  # accel_tilt_by_N_tilt
+    # rate_of_i_tilt_by_N_tilt
+    fp[7, 34] = -rate_of_i_tilt_by_theta_tilt_term * ratio_tilt_by_N_tilt
+    lost_lowering_tilt_by_lowered_tilt = (-abs_lost_lowering_tilt_term_inverse
+        - load_inertia_tilt * lost_lowering_tilt_by_theta_tilt_term)
+    balance_tilt_by_lowered_tilt = (force_tilt_by_lost_lowering_tilt
+        * lost_lowering_tilt_by_lowered_tilt)
+    accel_pan_by_lowered_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_lowered_tilt
+    lost_raising_tilt_by_raised_tilt = (-load_inertia_tilt * lost_raising_tilt_by_theta_tilt_term
+        + lost_raising_tilt_term_inverse)
+    balance_tilt_by_raised_tilt = force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_raised_tilt
+    accel_pan_by_raised_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_raised_tilt
+    lowered_tilt_by_lead_tilt_term = lead_tilt_inverse * lowered_tilt_term_inverse
+    lowered_tilt_term_inverse_sq = 1.0 / (lowered_tilt_term * lowered_tilt_term)
+    lead_tilt_inverse_sq = 1.0 / (lead_tilt * lead_tilt)
+    d_screw_tilt_pi_lead_tilt_inverse_sq = d_screw_tilt_pi * lead_tilt_inverse_sq
+    lowered_tilt_by_lead_tilt = (d_screw_tilt_pi * lowered_tilt_by_lead_tilt_term
+        + d_screw_tilt_pi_f_screw_tilt * lead_tilt_inverse * lowered_tilt_term_2
+        * lowered_tilt_term_inverse_sq + d_screw_tilt_pi_lead_tilt_inverse_sq * lowered_tilt_term_3)
+    raised_tilt_by_lead_tilt_term = lead_tilt_inverse * raised_tilt_term_inverse
+    raised_tilt_by_lead_tilt_term_2 = raised_tilt_term_2 / (raised_tilt_term * raised_tilt_term)
+    raised_tilt_by_lead_tilt_term_3 = lead_tilt_inverse * raised_tilt_by_lead_tilt_term_2
+    raised_tilt_by_lead_tilt = (d_screw_tilt_pi * raised_tilt_by_lead_tilt_term
+        + d_screw_tilt_pi_f_screw_tilt * raised_tilt_by_lead_tilt_term_3
+        - d_screw_tilt_pi_lead_tilt_inverse_sq * raised_tilt_term_3)
+    ratio_tilt_by_lead_tilt_term = math.pi * lead_tilt_inverse_sq * length_tilt_inverse
+    ratio_tilt_by_lead_tilt = -N_tilt * ratio_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt_term
+    ratio_tilt_by_theta_tilt_by_lead_tilt = (math.pi * N_tilt * lead_tilt_inverse_sq
+        * length_tilt_by_theta_tilt * length_tilt_inverse_sq * ratio_tilt_by_N_tilt_term
+        - N_tilt_ratio_tilt_by_theta_tilt_term * ratio_tilt_by_lead_tilt_term)
+    driving_torque_tilt_by_lead_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
+        * ratio_tilt_by_theta_tilt_by_lead_tilt + force_tilt_by_ratio_tilt
+        * ratio_tilt_by_lead_tilt)
+    carried_tilt_by_lead_tilt = (carried_tilt_by_ratio_tilt * ratio_tilt_by_lead_tilt
+        + driving_torque_tilt_by_lead_tilt * load_inertia_tilt)
+    lost_lowering_tilt_by_lead_tilt = lost_lowering_tilt_by_ratio_tilt * ratio_tilt_by_lead_tilt
+    lost_raising_tilt_by_lead_tilt = lost_raising_tilt_by_ratio_tilt * ratio_tilt_by_lead_tilt
+    balance_tilt_by_lead_tilt = (-accel_tilt_twice_J_motor_tilt_ratio_tilt * ratio_tilt_by_lead_tilt
+        + carried_tilt_by_lead_tilt * force_tilt_by_carried_tilt + driving_torque_tilt_by_lead_tilt
+        + force_tilt_by_lost_lowering_tilt * lost_lowering_tilt_by_lead_tilt
+        + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_lead_tilt)
+    accel_pan_by_lead_tilt = (-accel_pan_by_i_tilt_term * balance_tilt_by_lead_tilt
+        + accel_pan_by_lowered_tilt * lowered_tilt_by_lead_tilt
+        + accel_pan_by_raised_tilt * raised_tilt_by_lead_tilt)
+    fp[2, 35] = accel_pan_by_lead_tilt
+    accel_tilt_by_lowered_tilt = accel_tilt_by_i_tilt_term * balance_tilt_by_lowered_tilt
+    accel_tilt_by_raised_tilt = accel_tilt_by_i_tilt_term * balance_tilt_by_raised_tilt
+    fp[3, 35] = (accel_tilt_by_i_tilt_term * balance_tilt_by_lead_tilt
+        + accel_tilt_by_lowered_tilt * lowered_tilt_by_lead_tilt
+        + accel_tilt_by_raised_tilt * raised_tilt_by_lead_tilt)  # accel_tilt_by_lead_tilt
+    # rate_of_i_tilt_by_lead_tilt
+    fp[7, 35] = -rate_of_i_tilt_by_theta_tilt_term * ratio_tilt_by_lead_tilt
+    d_screw_tilt_pi_sq = (math.pi * math.pi) * d_screw_tilt
+    d_screw_tilt_pi_sq_f_screw_tilt = d_screw_tilt_pi_sq * f_screw_tilt
+    lowered_tilt_by_d_screw_tilt = ((math.pi * math.pi) * d_screw_tilt * lead_tilt_inverse
+        * lowered_tilt_term_2 * lowered_tilt_term_inverse_sq - d_screw_tilt_pi_sq_f_screw_tilt
+        * lowered_tilt_by_lead_tilt_term - lead_tilt_inverse_pi * lowered_tilt_term_3)
+    raised_tilt_by_d_screw_tilt = (-d_screw_tilt_pi_sq * raised_tilt_by_lead_tilt_term_3
+        + d_screw_tilt_pi_sq_f_screw_tilt * raised_tilt_by_lead_tilt_term
+        + lead_tilt_inverse_pi * raised_tilt_term_3)
+    accel_pan_by_d_screw_tilt = (accel_pan_by_lowered_tilt * lowered_tilt_by_d_screw_tilt
+        + accel_pan_by_raised_tilt * raised_tilt_by_d_screw_tilt)
+    fp[2, 36] = accel_pan_by_d_screw_tilt
+    fp[3, 36] = (accel_tilt_by_lowered_tilt * lowered_tilt_by_d_screw_tilt
+        + accel_tilt_by_raised_tilt * raised_tilt_by_d_screw_tilt)  # accel_tilt_by_d_screw_tilt
+    d_screw_tilt_sq_pi_sq = (math.pi * math.pi) * (d_screw_tilt * d_screw_tilt)
+    lowered_tilt_by_f_screw_tilt = (math.pi * d_screw_tilt * lowered_tilt_term_2
+        * lowered_tilt_term_inverse_sq - d_screw_tilt_sq_pi_sq * lowered_tilt_by_lead_tilt_term)
+    raised_tilt_by_f_screw_tilt = (d_screw_tilt_pi * raised_tilt_by_lead_tilt_term_2
+        + d_screw_tilt_sq_pi_sq * raised_tilt_by_lead_tilt_term)
+    accel_pan_by_f_screw_tilt = (accel_pan_by_lowered_tilt * lowered_tilt_by_f_screw_tilt
+        + accel_pan_by_raised_tilt * raised_tilt_by_f_screw_tilt)
+    fp[2, 37] = accel_pan_by_f_screw_tilt
+    fp[3, 37] = (accel_tilt_by_lowered_tilt * lowered_tilt_by_f_screw_tilt
+        + accel_tilt_by_raised_tilt * raised_tilt_by_f_screw_tilt)  # accel_tilt_by_f_screw_tilt
+    cos_tilt_half_length_tilt_inverse = cos_tilt * half_length_tilt_inverse
+    ratio_tilt_by_linkage_cos_tilt_term = N_tilt * lead_tilt_inverse_pi_length_tilt_inverse
+    ratio_tilt_by_linkage_cos_tilt_term_2 = ratio_tilt_by_linkage_cos_tilt_term * sin_tilt
+    ratio_tilt_by_linkage_cos_tilt = (-cos_tilt_half_length_tilt_inverse * ratio_tilt_by_length_tilt
+        + ratio_tilt_by_linkage_cos_tilt_term_2)
+    half_length_tilt_inverse_sin_tilt = half_length_tilt_inverse * sin_tilt
+    length_tilt_by_theta_tilt_by_linkage_cos_tilt = (cos_tilt
+        * length_tilt_by_theta_tilt_by_theta_tilt_term * ratio_tilt_by_N_tilt_term
+        + half_length_tilt_inverse_sin_tilt)
+    ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term = (cos_tilt
+        * ratio_tilt_by_linkage_cos_tilt_term)
+    ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term_2 = (N_tilt * length_tilt_by_theta_tilt
+        * ratio_tilt_by_theta_tilt_term_3)
+    ratio_tilt_by_theta_tilt_by_linkage_cos_tilt = (-cos_tilt_half_length_tilt_inverse
+        * ratio_tilt_by_theta_tilt_by_length_tilt + length_tilt_by_theta_tilt_by_linkage_cos_tilt
+        * ratio_tilt_by_length_tilt + ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term
+        - ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term_2 * sin_tilt)
+    driving_torque_tilt_by_linkage_cos_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
+        * ratio_tilt_by_theta_tilt_by_linkage_cos_tilt + force_tilt_by_ratio_tilt
+        * ratio_tilt_by_linkage_cos_tilt)
+    carried_tilt_by_linkage_cos_tilt = (carried_tilt_by_ratio_tilt * ratio_tilt_by_linkage_cos_tilt
+        + driving_torque_tilt_by_linkage_cos_tilt * load_inertia_tilt)
+    lost_lowering_tilt_by_linkage_cos_tilt = (lost_lowering_tilt_by_ratio_tilt
+        * ratio_tilt_by_linkage_cos_tilt)
+    lost_raising_tilt_by_linkage_cos_tilt = (lost_raising_tilt_by_ratio_tilt
+        * ratio_tilt_by_linkage_cos_tilt)
+    balance_tilt_by_linkage_cos_tilt = (-accel_tilt_twice_J_motor_tilt_ratio_tilt
+        * ratio_tilt_by_linkage_cos_tilt + carried_tilt_by_linkage_cos_tilt
+        * force_tilt_by_carried_tilt + driving_torque_tilt_by_linkage_cos_tilt
+        + force_tilt_by_lost_lowering_tilt * lost_lowering_tilt_by_linkage_cos_tilt
+        + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_linkage_cos_tilt)
+    accel_pan_by_linkage_cos_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_linkage_cos_tilt
+    ratio_tilt_by_linkage_sin_tilt = (-half_length_tilt_inverse_sin_tilt * ratio_tilt_by_length_tilt
+        - ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term)
+    length_tilt_by_theta_tilt_by_linkage_sin_tilt = (-cos_tilt_half_length_tilt_inverse
+        + 0.25 * length_tilt_inverse_cubed * ratio_tilt_by_N_tilt_term * sin_tilt)
+    ratio_tilt_by_theta_tilt_by_linkage_sin_tilt = (cos_tilt
+        * ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term_2 - half_length_tilt_inverse_sin_tilt
+        * ratio_tilt_by_theta_tilt_by_length_tilt + length_tilt_by_theta_tilt_by_linkage_sin_tilt
+        * ratio_tilt_by_length_tilt + ratio_tilt_by_linkage_cos_tilt_term_2)
+    driving_torque_tilt_by_linkage_sin_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
+        * ratio_tilt_by_theta_tilt_by_linkage_sin_tilt + force_tilt_by_ratio_tilt
+        * ratio_tilt_by_linkage_sin_tilt)
+    carried_tilt_by_linkage_sin_tilt = (carried_tilt_by_ratio_tilt * ratio_tilt_by_linkage_sin_tilt
+        + driving_torque_tilt_by_linkage_sin_tilt * load_inertia_tilt)
+    lost_lowering_tilt_by_linkage_sin_tilt = (lost_lowering_tilt_by_ratio_tilt
+        * ratio_tilt_by_linkage_sin_tilt)
+    lost_raising_tilt_by_linkage_sin_tilt = (lost_raising_tilt_by_ratio_tilt
+        * ratio_tilt_by_linkage_sin_tilt)
+    balance_tilt_by_linkage_sin_tilt = (-accel_tilt_twice_J_motor_tilt_ratio_tilt
+        * ratio_tilt_by_linkage_sin_tilt + carried_tilt_by_linkage_sin_tilt
+        * force_tilt_by_carried_tilt + driving_torque_tilt_by_linkage_sin_tilt
+        + force_tilt_by_lost_lowering_tilt * lost_lowering_tilt_by_linkage_sin_tilt
+        + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_linkage_sin_tilt)
+    accel_pan_by_linkage_sin_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_linkage_sin_tilt
+    linkage_cos_tilt_by_l_ground_tilt = 2.0 * l_ground_tilt
+    linkage_sin_tilt_inverse = 1.0 / linkage_sin_tilt
+    linkage_sin_tilt_by_l_ground_tilt_term = linkage_cos_tilt * linkage_sin_tilt_inverse
+    linkage_sin_tilt_by_l_ground_tilt = (l_ground_tilt * linkage_sin_tilt_inverse
+        * linkage_sin_tilt_term - linkage_cos_tilt_by_l_ground_tilt
+        * linkage_sin_tilt_by_l_ground_tilt_term)
+    length_tilt_by_l_ground_tilt = l_ground_tilt * length_tilt_inverse
+    ratio_tilt_by_l_ground_tilt = length_tilt_by_l_ground_tilt * ratio_tilt_by_length_tilt
+    length_tilt_by_theta_tilt_by_l_ground_tilt_term = (0.5 * length_tilt_inverse_cubed
+        * ratio_tilt_by_N_tilt_term)
+    length_tilt_by_theta_tilt_by_l_ground_tilt = (-l_ground_tilt
+        * length_tilt_by_theta_tilt_by_l_ground_tilt_term)
+    ratio_tilt_by_theta_tilt_by_l_ground_tilt = (length_tilt_by_l_ground_tilt
+        * ratio_tilt_by_theta_tilt_by_length_tilt + length_tilt_by_theta_tilt_by_l_ground_tilt
+        * ratio_tilt_by_length_tilt)
+    driving_torque_tilt_by_l_ground_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
+        * ratio_tilt_by_theta_tilt_by_l_ground_tilt + force_tilt_by_ratio_tilt
+        * ratio_tilt_by_l_ground_tilt)
+    carried_tilt_by_l_ground_tilt = (carried_tilt_by_ratio_tilt * ratio_tilt_by_l_ground_tilt
+        + driving_torque_tilt_by_l_ground_tilt * load_inertia_tilt)
+    lost_lowering_tilt_by_l_ground_tilt = (lost_lowering_tilt_by_ratio_tilt
+        * ratio_tilt_by_l_ground_tilt)
+    lost_raising_tilt_by_l_ground_tilt = (lost_raising_tilt_by_ratio_tilt
+        * ratio_tilt_by_l_ground_tilt)
+    balance_tilt_by_l_ground_tilt = (-accel_tilt_twice_J_motor_tilt_ratio_tilt
+        * ratio_tilt_by_l_ground_tilt + carried_tilt_by_l_ground_tilt * force_tilt_by_carried_tilt
+        + driving_torque_tilt_by_l_ground_tilt + force_tilt_by_lost_lowering_tilt
+        * lost_lowering_tilt_by_l_ground_tilt + force_tilt_by_lost_raising_tilt
+        * lost_raising_tilt_by_l_ground_tilt)
+    accel_pan_by_l_ground_tilt = (-accel_pan_by_i_tilt_term * balance_tilt_by_l_ground_tilt
+        + accel_pan_by_linkage_cos_tilt * linkage_cos_tilt_by_l_ground_tilt
+        + accel_pan_by_linkage_sin_tilt * linkage_sin_tilt_by_l_ground_tilt)
+    fp[2, 38] = accel_pan_by_l_ground_tilt
+    accel_tilt_by_linkage_cos_tilt = accel_tilt_by_i_tilt_term * balance_tilt_by_linkage_cos_tilt
+    accel_tilt_by_linkage_sin_tilt = accel_tilt_by_i_tilt_term * balance_tilt_by_linkage_sin_tilt
+    # accel_tilt_by_l_ground_tilt
+    fp[3, 38] = (accel_tilt_by_i_tilt_term * balance_tilt_by_l_ground_tilt
+        + accel_tilt_by_linkage_cos_tilt * linkage_cos_tilt_by_l_ground_tilt
+        + accel_tilt_by_linkage_sin_tilt * linkage_sin_tilt_by_l_ground_tilt)
+    rate_of_i_tilt_by_l_ground_tilt_term = (rate_of_i_tilt_by_theta_tilt_term
+        * ratio_tilt_by_linkage_cos_tilt)
+    rate_of_i_tilt_by_l_ground_tilt_term_2 = (rate_of_i_tilt_by_theta_tilt_term
+        * ratio_tilt_by_linkage_sin_tilt)
+    # rate_of_i_tilt_by_l_ground_tilt
+    fp[7, 38] = (-linkage_cos_tilt_by_l_ground_tilt * rate_of_i_tilt_by_l_ground_tilt_term
+        - linkage_sin_tilt_by_l_ground_tilt * rate_of_i_tilt_by_l_ground_tilt_term_2
+        - rate_of_i_tilt_by_theta_tilt_term * ratio_tilt_by_l_ground_tilt)
+    linkage_cos_tilt_by_l_min_tilt = -2.0 * l_min_tilt_plus_s_start_tilt
+    linkage_sin_tilt_by_l_min_tilt = (-linkage_cos_tilt_by_l_min_tilt
+        * linkage_sin_tilt_by_l_ground_tilt_term)
+    accel_pan_by_l_min_tilt = (accel_pan_by_linkage_cos_tilt * linkage_cos_tilt_by_l_min_tilt
+        + accel_pan_by_linkage_sin_tilt * linkage_sin_tilt_by_l_min_tilt)
+    fp[2, 39] = accel_pan_by_l_min_tilt
+    accel_tilt_by_l_min_tilt = (accel_tilt_by_linkage_cos_tilt * linkage_cos_tilt_by_l_min_tilt
+        + accel_tilt_by_linkage_sin_tilt * linkage_sin_tilt_by_l_min_tilt)
+    fp[3, 39] = accel_tilt_by_l_min_tilt
+    rate_of_i_tilt_by_l_min_tilt = (-linkage_cos_tilt_by_l_min_tilt
+        * rate_of_i_tilt_by_l_ground_tilt_term - linkage_sin_tilt_by_l_min_tilt
+        * rate_of_i_tilt_by_l_ground_tilt_term_2)
+    fp[7, 39] = rate_of_i_tilt_by_l_min_tilt
+    linkage_cos_tilt_by_r_arm_tilt = 2.0 * r_arm_tilt
+    linkage_sin_tilt_by_r_arm_tilt = (4.0 * l_ground_tilt_sq * linkage_sin_tilt_inverse * r_arm_tilt
+        - linkage_cos_tilt_by_r_arm_tilt * linkage_sin_tilt_by_l_ground_tilt_term)
+    length_tilt_by_r_arm_tilt = length_tilt_inverse * r_arm_tilt
+    ratio_tilt_by_r_arm_tilt = length_tilt_by_r_arm_tilt * ratio_tilt_by_length_tilt
+    length_tilt_by_theta_tilt_by_r_arm_tilt = (-length_tilt_by_theta_tilt_by_l_ground_tilt_term
+        * r_arm_tilt)
+    ratio_tilt_by_theta_tilt_by_r_arm_tilt = (length_tilt_by_r_arm_tilt
+        * ratio_tilt_by_theta_tilt_by_length_tilt + length_tilt_by_theta_tilt_by_r_arm_tilt
+        * ratio_tilt_by_length_tilt)
+    driving_torque_tilt_by_r_arm_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
+        * ratio_tilt_by_theta_tilt_by_r_arm_tilt + force_tilt_by_ratio_tilt
+        * ratio_tilt_by_r_arm_tilt)
+    carried_tilt_by_r_arm_tilt = (carried_tilt_by_ratio_tilt * ratio_tilt_by_r_arm_tilt
+        + driving_torque_tilt_by_r_arm_tilt * load_inertia_tilt)
+    lost_lowering_tilt_by_r_arm_tilt = lost_lowering_tilt_by_ratio_tilt * ratio_tilt_by_r_arm_tilt
+    lost_raising_tilt_by_r_arm_tilt = lost_raising_tilt_by_ratio_tilt * ratio_tilt_by_r_arm_tilt
+    balance_tilt_by_r_arm_tilt = (-accel_tilt_twice_J_motor_tilt_ratio_tilt
+        * ratio_tilt_by_r_arm_tilt + carried_tilt_by_r_arm_tilt * force_tilt_by_carried_tilt
+        + driving_torque_tilt_by_r_arm_tilt + force_tilt_by_lost_lowering_tilt
+        * lost_lowering_tilt_by_r_arm_tilt + force_tilt_by_lost_raising_tilt
+        * lost_raising_tilt_by_r_arm_tilt)
+    accel_pan_by_r_arm_tilt = (-accel_pan_by_i_tilt_term * balance_tilt_by_r_arm_tilt
+        + accel_pan_by_linkage_cos_tilt * linkage_cos_tilt_by_r_arm_tilt
+        + accel_pan_by_linkage_sin_tilt * linkage_sin_tilt_by_r_arm_tilt)
+    fp[2, 40] = accel_pan_by_r_arm_tilt
+    # accel_tilt_by_r_arm_tilt
+    fp[3, 40] = (accel_tilt_by_i_tilt_term * balance_tilt_by_r_arm_tilt
+        + accel_tilt_by_linkage_cos_tilt * linkage_cos_tilt_by_r_arm_tilt
+        + accel_tilt_by_linkage_sin_tilt * linkage_sin_tilt_by_r_arm_tilt)
+    # rate_of_i_tilt_by_r_arm_tilt
+    fp[7, 40] = (-linkage_cos_tilt_by_r_arm_tilt * rate_of_i_tilt_by_l_ground_tilt_term
+        - linkage_sin_tilt_by_r_arm_tilt * rate_of_i_tilt_by_l_ground_tilt_term_2
+        - rate_of_i_tilt_by_theta_tilt_term * ratio_tilt_by_r_arm_tilt)
+    fp[2, 41] = accel_pan_by_l_min_tilt  # accel_pan_by_s_start_tilt
+    fp[3, 41] = accel_tilt_by_l_min_tilt  # accel_tilt_by_s_start_tilt
+    fp[7, 41] = rate_of_i_tilt_by_l_min_tilt  # rate_of_i_tilt_by_s_start_tilt
+    accel_pan_by_gravity = (accel_pan_by_gravity_cos_tilt * gravity_cos_tilt_by_gravity
+        + accel_pan_by_gravity_sin_tilt * gravity_sin_tilt_by_gravity)
+    fp[2, 43] = accel_pan_by_gravity
+    fp[3, 43] = (accel_tilt_by_gravity_cos_tilt * gravity_cos_tilt_by_gravity
+        + accel_tilt_by_gravity_sin_tilt * gravity_sin_tilt_by_gravity)  # accel_tilt_by_gravity
+    if len(gx) == 0:
+        return
+    gx[0, 0] = holding_pan_by_theta_pan
+    gx[3, 0] = accel_pan_by_theta_gear_pan * mass_pan_tilt  # holding_tilt_by_theta_pan
+    sign_load_torque_tilt = 0.0 if load_torque_tilt == 0 else math.copysign(1, load_torque_tilt)
+    raised_tilt_minus_lowered_tilt = -lowered_tilt + raised_tilt
+    forward_tilt_by_theta_pan_term = 0.5 * lowered_tilt + 0.5 * raised_tilt - 1.0
+    forward_tilt_by_theta_pan_term_2 = (-forward_tilt_by_theta_pan_term
+        + 0.5 * raised_tilt_minus_lowered_tilt * sign_load_torque_tilt)
+    forward_tilt_by_theta_gear_pan = (forward_tilt_by_theta_pan_term_2
+        * load_torque_tilt_by_theta_gear_pan)
+    gx[4, 0] = -forward_tilt_by_theta_gear_pan  # forward_tilt_by_theta_pan
+    backward_tilt_by_theta_pan_term = (forward_tilt_by_theta_pan_term
+        + 0.5 * raised_tilt_minus_lowered_tilt * sign_load_torque_tilt)
+    backward_tilt_by_theta_gear_pan = (backward_tilt_by_theta_pan_term
+        * load_torque_tilt_by_theta_gear_pan)
+    gx[5, 0] = -backward_tilt_by_theta_gear_pan  # backward_tilt_by_theta_pan
+    gx[6, 0] = -1.0  # separation_pan_by_theta_pan
+    gx[8, 0] = -k_shaft_pan  # upper_pan_by_theta_pan
+    gx[9, 0] = -k_shaft_pan  # lower_pan_by_theta_pan
+    # holding_tilt_by_theta_tilt
+    gx[3, 1] = (-J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_theta_tilt
+        - accel_pan_by_theta_tilt * mass_pan_tilt - accel_pan_by_theta_tilt_term_2
+        + 0.5 * coriolis_by_theta_tilt * omega_pan + cos_tilt * gravity_sin_tilt
+        + force_tilt_by_ratio_tilt * ratio_tilt_by_theta_tilt - gravity_cos_tilt_sin_tilt)
+    # forward_tilt_by_theta_tilt
+    gx[4, 1] = forward_tilt_by_theta_pan_term_2 * load_torque_tilt_by_theta_tilt
+    # backward_tilt_by_theta_tilt
+    gx[5, 1] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_theta_tilt
+    gx[0, 2] = follower_torque_tilt_by_omega_gear_pan  # holding_pan_by_omega_pan
+    # holding_tilt_by_omega_pan
+    gx[3, 2] = (-accel_pan_by_omega_pan * mass_pan_tilt
+        + coriolis_by_omega_pan * force_tilt_by_coriolis + half_coriolis)
+    # forward_tilt_by_omega_pan
+    gx[4, 2] = forward_tilt_by_theta_pan_term_2 * load_torque_tilt_by_omega_pan
+    # backward_tilt_by_omega_pan
+    gx[5, 2] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_omega_pan
+    gx[8, 2] = -d_shaft_pan  # upper_pan_by_omega_pan
+    gx[9, 2] = -d_shaft_pan  # lower_pan_by_omega_pan
+    # holding_tilt_by_omega_tilt
+    gx[3, 3] = -accel_pan_by_omega_tilt * mass_pan_tilt - accel_pan_by_omega_tilt_term
+    # forward_tilt_by_omega_tilt
+    gx[4, 3] = forward_tilt_by_theta_pan_term_2 * load_torque_tilt_by_omega_tilt
+    # backward_tilt_by_omega_tilt
+    gx[5, 3] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_omega_tilt
+    gx[0, 4] = -holding_pan_by_theta_pan  # holding_pan_by_theta_gear_pan
+    gx[3, 4] = -accel_pan_by_theta_gear_pan * mass_pan_tilt  # holding_tilt_by_theta_gear_pan
+    gx[4, 4] = forward_tilt_by_theta_gear_pan
+    gx[5, 4] = backward_tilt_by_theta_gear_pan
+    gx[6, 4] = 1.0  # separation_pan_by_theta_gear_pan
+    gx[8, 4] = k_shaft_pan  # upper_pan_by_theta_gear_pan
+    gx[9, 4] = k_shaft_pan  # lower_pan_by_theta_gear_pan
+    gx[0, 5] = -follower_torque_tilt_by_omega_gear_pan  # holding_pan_by_omega_gear_pan
+    gx[3, 5] = -accel_pan_by_omega_gear_pan * mass_pan_tilt  # holding_tilt_by_omega_gear_pan
+    # forward_tilt_by_omega_gear_pan
+    gx[4, 5] = forward_tilt_by_theta_pan_term_2 * load_torque_tilt_by_omega_gear_pan
+    # backward_tilt_by_omega_gear_pan
+    gx[5, 5] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_omega_gear_pan
+    gx[8, 5] = d_shaft_pan  # upper_pan_by_omega_gear_pan
+    gx[9, 5] = d_shaft_pan  # lower_pan_by_omega_gear_pan
+    gx[0, 6] = balance_gear_pan_by_i_pan  # holding_pan_by_i_pan
+    # holding_tilt_by_i_tilt
+    gx[3, 7] = -accel_pan_by_i_tilt * mass_pan_tilt + driving_torque_tilt_by_i_tilt
+    gp[3, 0] = -accel_pan_by_inertia_pan * mass_pan_tilt  # holding_tilt_by_J_pan
+    forward_tilt_by_J_pan = (forward_tilt_by_theta_pan_term_2
+        * load_torque_tilt_by_follower_inertia_tilt)
+    gp[4, 0] = forward_tilt_by_J_pan
+    backward_tilt_by_J_pan = (backward_tilt_by_theta_pan_term
+        * load_torque_tilt_by_follower_inertia_tilt)
+    gp[5, 0] = backward_tilt_by_J_pan
+    holding_tilt_by_J_x_tilt = (-accel_pan_by_inertia_pan_sin_sq_tilt * mass_pan_tilt
+        + load_torque_tilt_by_inertia_pan_sin_sq_tilt_term)
+    gp[3, 1] = holding_tilt_by_J_x_tilt
+    forward_tilt_by_J_x_tilt = (forward_tilt_by_theta_pan_term_2
+        * load_torque_tilt_by_inertia_pan_sin_sq_tilt)
+    gp[4, 1] = forward_tilt_by_J_x_tilt
+    backward_tilt_by_J_x_tilt = (backward_tilt_by_theta_pan_term
+        * load_torque_tilt_by_inertia_pan_sin_sq_tilt)
+    gp[5, 1] = backward_tilt_by_J_x_tilt
+    holding_tilt_by_J_y_tilt = -accel_pan_by_inertia_tilt * mass_pan_tilt
+    gp[3, 2] = holding_tilt_by_J_y_tilt
+    holding_tilt_by_J_z_tilt = (-accel_pan_by_J_z_tilt * mass_pan_tilt
+        - load_torque_tilt_by_inertia_pan_sin_sq_tilt_term)
+    gp[3, 3] = holding_tilt_by_J_z_tilt
+    forward_tilt_by_J_z_tilt = (-forward_tilt_by_J_x_tilt
+        + forward_tilt_by_theta_pan_term_2 * load_torque_tilt_by_follower_inertia_tilt)
+    gp[4, 3] = forward_tilt_by_J_z_tilt
+    backward_tilt_by_J_z_tilt = (-backward_tilt_by_J_x_tilt
+        + backward_tilt_by_theta_pan_term * load_torque_tilt_by_follower_inertia_tilt)
+    gp[5, 3] = backward_tilt_by_J_z_tilt
+    # holding_tilt_by_m_payload
+    gp[3, 4] = (-accel_pan * (-cos_tilt * coupling_cos_tilt_by_m_payload
+        + coupling_sin_tilt_by_m_payload * sin_tilt) - accel_pan_by_m_payload * mass_pan_tilt
+        + cos_tilt * gravity_cos_tilt_by_m_payload + gravity_sin_tilt_by_m_payload * sin_tilt
+        + inertia_pan_sin_cos_tilt_by_m_payload * load_torque_tilt_by_inertia_pan_sin_cos_tilt_term
+        + inertia_pan_sin_sq_tilt_by_m_payload * load_torque_tilt_by_inertia_pan_sin_sq_tilt_term)
+    cos_tilt_gravity_cos_tilt_by_m_payload = cos_tilt * gravity_cos_tilt_by_m_payload
+    forward_tilt_by_m_payload_term = (coupling_cos_tilt_by_m_payload
+        * load_torque_tilt_by_coupling_cos_tilt)
+    forward_tilt_by_m_payload_term_2 = (coupling_sin_tilt_by_m_payload
+        * load_torque_tilt_by_coupling_sin_tilt)
+    gravity_sin_tilt_by_m_payload_sin_tilt = gravity_sin_tilt_by_m_payload * sin_tilt
+    forward_tilt_by_m_payload_term_3 = (inertia_pan_sin_cos_tilt_by_m_payload
+        * load_torque_tilt_by_inertia_pan_sin_cos_tilt)
+    # forward_tilt_by_m_payload
+    gp[4, 4] = (cos_tilt_gravity_cos_tilt_by_m_payload * forward_tilt_by_theta_pan_term_2
+        + forward_tilt_by_J_pan * inertia_pan_by_m_payload
+        + forward_tilt_by_J_x_tilt * inertia_pan_sin_sq_tilt_by_m_payload
+        + forward_tilt_by_m_payload_term * forward_tilt_by_theta_pan_term_2
+        + forward_tilt_by_m_payload_term_2 * forward_tilt_by_theta_pan_term_2
+        + forward_tilt_by_m_payload_term_3 * forward_tilt_by_theta_pan_term_2
+        + forward_tilt_by_theta_pan_term_2 * gravity_sin_tilt_by_m_payload_sin_tilt)
+    # backward_tilt_by_m_payload
+    gp[5, 4] = (backward_tilt_by_J_pan * inertia_pan_by_m_payload
+        + backward_tilt_by_J_x_tilt * inertia_pan_sin_sq_tilt_by_m_payload
+        + backward_tilt_by_theta_pan_term * cos_tilt_gravity_cos_tilt_by_m_payload
+        + backward_tilt_by_theta_pan_term * forward_tilt_by_m_payload_term
+        + backward_tilt_by_theta_pan_term * forward_tilt_by_m_payload_term_2
+        + backward_tilt_by_theta_pan_term * forward_tilt_by_m_payload_term_3
+        + backward_tilt_by_theta_pan_term * gravity_sin_tilt_by_m_payload_sin_tilt)
+    gp[3, 5] = holding_tilt_by_J_x_tilt  # holding_tilt_by_J_x_payload
+    gp[4, 5] = forward_tilt_by_J_x_tilt  # forward_tilt_by_J_x_payload
+    gp[5, 5] = backward_tilt_by_J_x_tilt  # backward_tilt_by_J_x_payload
+    gp[3, 6] = holding_tilt_by_J_y_tilt  # holding_tilt_by_J_y_payload
+    gp[3, 7] = holding_tilt_by_J_z_tilt  # holding_tilt_by_J_z_payload
+    gp[4, 7] = forward_tilt_by_J_z_tilt  # forward_tilt_by_J_z_payload
+    gp[5, 7] = backward_tilt_by_J_z_tilt  # backward_tilt_by_J_z_payload
+    # holding_tilt_by_c_x_payload
+    gp[3, 8] = (-accel_pan_by_c_x_payload * mass_pan_tilt
+        - accel_pan_sin_tilt * coupling_sin_tilt_by_c_x_payload
+        + 0.5 * coriolis_by_inertia_pan_sin_cos_tilt * inertia_tilt_by_c_z_payload * omega_pan
+        + cos_tilt * gravity_cos_tilt_by_c_x_payload
+        - inertia_pan_by_c_x_payload * load_torque_tilt_by_inertia_pan_sin_sq_tilt_term)
+    cos_tilt_gravity_cos_tilt_by_c_x_payload = cos_tilt * gravity_cos_tilt_by_c_x_payload
+    forward_tilt_by_c_x_payload_term = (coupling_sin_tilt_by_c_x_payload
+        * load_torque_tilt_by_coupling_sin_tilt)
+    forward_tilt_by_c_x_payload_term_2 = (inertia_tilt_by_c_z_payload
+        * load_torque_tilt_by_inertia_pan_sin_cos_tilt)
+    # forward_tilt_by_c_x_payload
+    gp[4, 8] = (cos_tilt_gravity_cos_tilt_by_c_x_payload * forward_tilt_by_theta_pan_term_2
+        + forward_tilt_by_J_pan * inertia_pan_by_c_x_payload
+        - forward_tilt_by_J_x_tilt * inertia_pan_by_c_x_payload
+        + forward_tilt_by_c_x_payload_term * forward_tilt_by_theta_pan_term_2
+        + forward_tilt_by_c_x_payload_term_2 * forward_tilt_by_theta_pan_term_2)
+    # backward_tilt_by_c_x_payload
+    gp[5, 8] = (backward_tilt_by_J_pan * inertia_pan_by_c_x_payload
+        - backward_tilt_by_J_x_tilt * inertia_pan_by_c_x_payload
+        + backward_tilt_by_theta_pan_term * cos_tilt_gravity_cos_tilt_by_c_x_payload
+        + backward_tilt_by_theta_pan_term * forward_tilt_by_c_x_payload_term
+        + backward_tilt_by_theta_pan_term * forward_tilt_by_c_x_payload_term_2)
+    # holding_tilt_by_c_y_payload
+    gp[3, 9] = (-accel_pan * (-cos_tilt * gravity_sin_tilt_by_gravity
+        + gravity_cos_tilt_by_gravity * sin_tilt) - accel_pan_by_c_y_payload * mass_pan_tilt)
+    forward_tilt_by_c_y_payload_term = (gravity_cos_tilt_by_gravity
+        * load_torque_tilt_by_coupling_sin_tilt)
+    forward_tilt_by_c_y_payload_term_2 = (gravity_sin_tilt_by_gravity
+        * load_torque_tilt_by_coupling_cos_tilt)
+    # forward_tilt_by_c_y_payload
+    gp[4, 9] = (forward_tilt_by_J_pan * inertia_pan_by_c_y_payload
+        + forward_tilt_by_c_y_payload_term * forward_tilt_by_theta_pan_term_2
+        + forward_tilt_by_c_y_payload_term_2 * forward_tilt_by_theta_pan_term_2)
+    # backward_tilt_by_c_y_payload
+    gp[5, 9] = (backward_tilt_by_J_pan * inertia_pan_by_c_y_payload
+        + backward_tilt_by_theta_pan_term * forward_tilt_by_c_y_payload_term
+        + backward_tilt_by_theta_pan_term * forward_tilt_by_c_y_payload_term_2)
+    # holding_tilt_by_c_z_payload
+    gp[3, 10] = (-accel_pan_by_c_z_payload * mass_pan_tilt
+        + accel_pan_cos_tilt * coupling_sin_tilt_by_c_x_payload
+        + gravity_cos_tilt_by_c_x_payload * sin_tilt
+        + inertia_pan_by_c_x_payload * load_torque_tilt_by_inertia_pan_sin_cos_tilt_term
+        + inertia_tilt_by_c_z_payload * load_torque_tilt_by_inertia_pan_sin_sq_tilt_term)
+    forward_tilt_by_c_z_payload_term = (coupling_sin_tilt_by_c_x_payload
+        * load_torque_tilt_by_coupling_cos_tilt)
+    gravity_cos_tilt_by_c_x_payload_sin_tilt = gravity_cos_tilt_by_c_x_payload * sin_tilt
+    forward_tilt_by_c_z_payload_term_2 = (inertia_pan_by_c_x_payload
+        * load_torque_tilt_by_inertia_pan_sin_cos_tilt)
+    # forward_tilt_by_c_z_payload
+    gp[4, 10] = (forward_tilt_by_J_x_tilt * inertia_tilt_by_c_z_payload
+        + forward_tilt_by_c_z_payload_term * forward_tilt_by_theta_pan_term_2
+        + forward_tilt_by_c_z_payload_term_2 * forward_tilt_by_theta_pan_term_2
+        + forward_tilt_by_theta_pan_term_2 * gravity_cos_tilt_by_c_x_payload_sin_tilt)
+    # backward_tilt_by_c_z_payload
+    gp[5, 10] = (backward_tilt_by_J_x_tilt * inertia_tilt_by_c_z_payload
+        + backward_tilt_by_theta_pan_term * forward_tilt_by_c_z_payload_term
+        + backward_tilt_by_theta_pan_term * forward_tilt_by_c_z_payload_term_2
+        + backward_tilt_by_theta_pan_term * gravity_cos_tilt_by_c_x_payload_sin_tilt)
+    gp[3, 11] = -accel_pan_by_b_pan * mass_pan_tilt  # holding_tilt_by_b_pan
+    # forward_tilt_by_b_pan
+    gp[4, 11] = forward_tilt_by_theta_pan_term_2 * load_torque_tilt_by_b_pan
+    # backward_tilt_by_b_pan
+    gp[5, 11] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_b_pan
+    gp[3, 12] = -accel_pan_by_b_tilt * mass_pan_tilt - omega_tilt  # holding_tilt_by_b_tilt
+    gp[4, 12] = -forward_tilt_by_theta_pan_term_2 * omega_tilt  # forward_tilt_by_b_tilt
+    gp[5, 12] = -backward_tilt_by_theta_pan_term * omega_tilt  # backward_tilt_by_b_tilt
+    gp[1, 14] = a_F_s_pan + 1.0  # forward_pan_by_F_s_pan
+    gp[2, 14] = 1.0 - a_F_s_pan  # backward_pan_by_F_s_pan
+    gp[1, 18] = F_s_pan  # forward_pan_by_a_F_s_pan
+    gp[2, 18] = -F_s_pan  # backward_pan_by_a_F_s_pan
+    gp[0, 21] = balance_gear_pan_by_gap_pan  # holding_pan_by_gap_pan
+    gp[3, 21] = -accel_pan_by_gap_pan * mass_pan_tilt  # holding_tilt_by_gap_pan
+    # forward_tilt_by_gap_pan
+    gp[4, 21] = forward_tilt_by_theta_pan_term_2 * load_torque_tilt_by_gap_pan
+    # backward_tilt_by_gap_pan
+    gp[5, 21] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_gap_pan
+    gp[7, 21] = 0.5  # half_gap_pan_by_gap_pan
+    lower_pan_by_gap_pan = 0.5 * k_shaft_pan
+    gp[8, 21] = -lower_pan_by_gap_pan  # upper_pan_by_gap_pan
+    gp[9, 21] = lower_pan_by_gap_pan
+    gp[0, 22] = balance_gear_pan_by_k_shaft_pan  # holding_pan_by_k_shaft_pan
+    gp[3, 22] = -accel_pan_by_k_shaft_pan * mass_pan_tilt  # holding_tilt_by_k_shaft_pan
+    # forward_tilt_by_k_shaft_pan
+    gp[4, 22] = forward_tilt_by_theta_pan_term_2 * load_torque_tilt_by_k_shaft_pan
+    # backward_tilt_by_k_shaft_pan
+    gp[5, 22] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_k_shaft_pan
+    gp[8, 22] = -half_gap_pan - theta_pan_minus_theta_gear_pan  # upper_pan_by_k_shaft_pan
+    gp[9, 22] = half_gap_pan + theta_gear_pan - theta_pan  # lower_pan_by_k_shaft_pan
+    gp[0, 23] = balance_gear_pan_by_d_shaft_pan  # holding_pan_by_d_shaft_pan
+    gp[3, 23] = -accel_pan_by_d_shaft_pan * mass_pan_tilt  # holding_tilt_by_d_shaft_pan
+    # forward_tilt_by_d_shaft_pan
+    gp[4, 23] = forward_tilt_by_theta_pan_term_2 * load_torque_tilt_by_d_shaft_pan
+    # backward_tilt_by_d_shaft_pan
+    gp[5, 23] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_d_shaft_pan
+    gp[8, 23] = upper_pan_by_d_shaft_pan
+    gp[9, 23] = upper_pan_by_d_shaft_pan  # lower_pan_by_d_shaft_pan
+    gp[0, 26] = balance_gear_pan_by_K_t_pan  # holding_pan_by_K_t_pan
+    gp[0, 28] = K_t_pan * i_pan  # holding_pan_by_N_pan
+    # holding_tilt_by_K_t_tilt
+    gp[3, 31] = -accel_pan_by_K_t_tilt * mass_pan_tilt + i_tilt * ratio_tilt
+    # holding_tilt_by_J_motor_tilt
+    gp[3, 32] = -accel_pan_by_J_motor_tilt * mass_pan_tilt - driving_torque_tilt_term
+    # holding_tilt_by_b_motor_tilt
+    gp[3, 33] = -accel_pan_by_b_motor_tilt * mass_pan_tilt - omega_tilt_ratio_tilt_sq
+    # holding_tilt_by_N_tilt
+    gp[3, 34] = (-J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_N_tilt
+        - accel_pan_by_N_tilt * mass_pan_tilt + force_tilt_by_ratio_tilt * ratio_tilt_by_N_tilt)
+    gp[3, 35] = (-J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_lead_tilt
+        - accel_pan_by_lead_tilt * mass_pan_tilt
+        + force_tilt_by_ratio_tilt * ratio_tilt_by_lead_tilt)  # holding_tilt_by_lead_tilt
+    half_load_torque_tilt = 0.5 * load_torque_tilt
+    half_abs_load_torque_tilt = 0.5 * abs(load_torque_tilt)
+    forward_tilt_by_lead_tilt_term = -half_abs_load_torque_tilt - half_load_torque_tilt
+    forward_tilt_by_lead_tilt_term_2 = half_abs_load_torque_tilt - half_load_torque_tilt
+    gp[4, 35] = (forward_tilt_by_lead_tilt_term * lowered_tilt_by_lead_tilt
+        + forward_tilt_by_lead_tilt_term_2 * raised_tilt_by_lead_tilt)  # forward_tilt_by_lead_tilt
+    # backward_tilt_by_lead_tilt
+    gp[5, 35] = (-forward_tilt_by_lead_tilt_term * raised_tilt_by_lead_tilt
+        - forward_tilt_by_lead_tilt_term_2 * lowered_tilt_by_lead_tilt)
+    gp[3, 36] = -accel_pan_by_d_screw_tilt * mass_pan_tilt  # holding_tilt_by_d_screw_tilt
+    # forward_tilt_by_d_screw_tilt
+    gp[4, 36] = (forward_tilt_by_lead_tilt_term * lowered_tilt_by_d_screw_tilt
+        + forward_tilt_by_lead_tilt_term_2 * raised_tilt_by_d_screw_tilt)
+    # backward_tilt_by_d_screw_tilt
+    gp[5, 36] = (-forward_tilt_by_lead_tilt_term * raised_tilt_by_d_screw_tilt
+        - forward_tilt_by_lead_tilt_term_2 * lowered_tilt_by_d_screw_tilt)
+    gp[3, 37] = -accel_pan_by_f_screw_tilt * mass_pan_tilt  # holding_tilt_by_f_screw_tilt
+    # forward_tilt_by_f_screw_tilt
+    gp[4, 37] = (forward_tilt_by_lead_tilt_term * lowered_tilt_by_f_screw_tilt
+        + forward_tilt_by_lead_tilt_term_2 * raised_tilt_by_f_screw_tilt)
+    # backward_tilt_by_f_screw_tilt
+    gp[5, 37] = (-forward_tilt_by_lead_tilt_term * raised_tilt_by_f_screw_tilt
+        - forward_tilt_by_lead_tilt_term_2 * lowered_tilt_by_f_screw_tilt)
+    gp[3, 38] = (-J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_l_ground_tilt
+        - accel_pan_by_l_ground_tilt * mass_pan_tilt
+        + driving_torque_tilt_by_linkage_cos_tilt * linkage_cos_tilt_by_l_ground_tilt
+        + driving_torque_tilt_by_linkage_sin_tilt * linkage_sin_tilt_by_l_ground_tilt
+        + force_tilt_by_ratio_tilt * ratio_tilt_by_l_ground_tilt)  # holding_tilt_by_l_ground_tilt
+    holding_tilt_by_l_min_tilt = (-accel_pan_by_l_min_tilt * mass_pan_tilt
+        + driving_torque_tilt_by_linkage_cos_tilt * linkage_cos_tilt_by_l_min_tilt
+        + driving_torque_tilt_by_linkage_sin_tilt * linkage_sin_tilt_by_l_min_tilt)
+    gp[3, 39] = holding_tilt_by_l_min_tilt
+    gp[3, 40] = (-J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_r_arm_tilt
+        - accel_pan_by_r_arm_tilt * mass_pan_tilt
+        + driving_torque_tilt_by_linkage_cos_tilt * linkage_cos_tilt_by_r_arm_tilt
+        + driving_torque_tilt_by_linkage_sin_tilt * linkage_sin_tilt_by_r_arm_tilt
+        + force_tilt_by_ratio_tilt * ratio_tilt_by_r_arm_tilt)  # holding_tilt_by_r_arm_tilt
+    gp[3, 41] = holding_tilt_by_l_min_tilt  # holding_tilt_by_s_start_tilt
+    gp[3, 43] = (-accel_pan_by_gravity * mass_pan_tilt + cos_tilt * gravity_cos_tilt_by_gravity
+        + gravity_sin_tilt_by_gravity * sin_tilt)  # holding_tilt_by_gravity
+    cos_tilt_gravity_cos_tilt_by_gravity = cos_tilt * gravity_cos_tilt_by_gravity
+    gravity_sin_tilt_by_gravity_sin_tilt = gravity_sin_tilt_by_gravity * sin_tilt
+    # forward_tilt_by_gravity
+    gp[4, 43] = (cos_tilt_gravity_cos_tilt_by_gravity * forward_tilt_by_theta_pan_term_2
+        + forward_tilt_by_theta_pan_term_2 * gravity_sin_tilt_by_gravity_sin_tilt)
+    # backward_tilt_by_gravity
+    gp[5, 43] = (backward_tilt_by_theta_pan_term * cos_tilt_gravity_cos_tilt_by_gravity
+        + backward_tilt_by_theta_pan_term * gravity_sin_tilt_by_gravity_sin_tilt)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def outputs(t, x, u, p, y):
+    """Write the measured signals into y.
+
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; y [4] in
+      OUTPUT_UNITS.
+    y: reading_theta_pan, reading_theta_tilt, reading_i_pan, reading_i_tilt.
+    """
+    theta_pan, theta_tilt, i_pan, i_tilt = x[0], x[1], x[6], x[7]
+    y[0] = theta_pan  # reading_theta_pan
+    y[1] = theta_tilt  # reading_theta_tilt
+    y[2] = i_pan  # reading_i_pan
+    y[3] = i_tilt  # reading_i_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def output_jacobian(t, x, u, p, yx, yp):
+    """Write the non-zero derivatives of outputs by state and parameter.
+
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; yx
+      [4, 8]; yp [4, 44].
+    """
+    yx[0, 0] = 1.0  # reading_theta_pan_by_theta_pan
+    yx[1, 1] = 1.0  # reading_theta_tilt_by_theta_tilt
+    yx[2, 6] = 1.0  # reading_i_pan_by_i_pan
+    yx[3, 7] = 1.0  # reading_i_tilt_by_i_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def domain(p, bounds):
     """Write lower and upper bound of the state of every row of DOMAIN into bounds.
 
     p [44] in the units of PARAMETERS; bounds [2, 2] in STATE_UNITS: lower, upper.
     """
-    l_ground_tilt = p[38]
-    l_min_tilt = p[39]
-    r_arm_tilt = p[40]
-    s_start_tilt = p[41]
+    l_ground_tilt, l_min_tilt, r_arm_tilt, s_start_tilt = p[38], p[39], p[40], p[41]
     s_max_tilt = p[42]
-    lowest_theta_tilt_term = (l_ground_tilt * l_ground_tilt) + (r_arm_tilt * r_arm_tilt)
-    lowest_theta_tilt_term_2 = 0.5 / (l_ground_tilt * r_arm_tilt)
-    lowest_theta_tilt_term_3 = math.acos(
-        lowest_theta_tilt_term_2
-        * (lowest_theta_tilt_term - ((l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)))
-    )
-    bounds[0, 0] = lowest_theta_tilt_term_3 - math.pi
-    bounds[0, 1] = lowest_theta_tilt_term_3
-    bounds[1, 0] = lowest_theta_tilt_term_3 - math.acos(
-        max(
-            -1.0,
-            min(
-                1.0,
-                lowest_theta_tilt_term_2
-                * (
-                    lowest_theta_tilt_term - ((l_min_tilt + s_max_tilt) * (l_min_tilt + s_max_tilt))
-                ),
-            ),
-        )
-    )
-    bounds[1, 1] = lowest_theta_tilt_term_3 - math.acos(
-        max(
-            -1.0,
-            min(
-                1.0,
-                lowest_theta_tilt_term_2 * (-(l_min_tilt * l_min_tilt) + lowest_theta_tilt_term),
-            ),
-        )
-    )
+    l_ground_tilt_sq_plus_r_arm_tilt_sq = ((l_ground_tilt * l_ground_tilt)
+        + (r_arm_tilt * r_arm_tilt))
+    half_per_l_ground_tilt_per_r_arm_tilt = 0.5 / (l_ground_tilt * r_arm_tilt)
+    highest_theta_tilt = (math.acos(half_per_l_ground_tilt_per_r_arm_tilt
+        * (l_ground_tilt_sq_plus_r_arm_tilt_sq - ((l_min_tilt + s_start_tilt) * (l_min_tilt
+        + s_start_tilt)))))
+    bounds[0, 0] = highest_theta_tilt - math.pi  # lowest_theta_tilt
+    bounds[0, 1] = highest_theta_tilt
+    bounds[1, 0] = (highest_theta_tilt
+        - math.acos(max(-1.0, min(1.0, half_per_l_ground_tilt_per_r_arm_tilt
+        * (l_ground_tilt_sq_plus_r_arm_tilt_sq - ((l_min_tilt + s_max_tilt) * (l_min_tilt
+        + s_max_tilt)))))))  # lowest_theta_tilt
+    # highest_theta_tilt
+    bounds[1, 1] = (highest_theta_tilt
+        - math.acos(max(-1.0, min(1.0, half_per_l_ground_tilt_per_r_arm_tilt
+        * (l_ground_tilt_sq_plus_r_arm_tilt_sq - (l_min_tilt * l_min_tilt))))))
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def margins(p, margin):
     """Write by how much the parameters meet every row of REQUIREMENTS into margin.
 
     p [44] in the units of PARAMETERS; margin [4] in units of what is compared.
+    margin: requirement_0, requirement_1, requirement_2, requirement_3.
     """
-    F_c_pan = p[13]
-    F_s_pan = p[14]
-    lead_tilt = p[35]
-    d_screw_tilt = p[36]
-    f_screw_tilt = p[37]
-    l_ground_tilt = p[38]
-    l_min_tilt = p[39]
-    r_arm_tilt = p[40]
-    s_start_tilt = p[41]
+    F_c_pan, F_s_pan, lead_tilt, d_screw_tilt, f_screw_tilt = p[13], p[14], p[35], p[36], p[37]
+    l_ground_tilt, l_min_tilt, r_arm_tilt, s_start_tilt = p[38], p[39], p[40], p[41]
     s_max_tilt = p[42]
-    margin[0] = -F_c_pan + F_s_pan
-    margin[1] = 2.0 * l_ground_tilt * r_arm_tilt - abs(
-        (l_ground_tilt * l_ground_tilt)
-        + (r_arm_tilt * r_arm_tilt)
-        - ((l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt))
-    )
-    margin[2] = s_max_tilt - s_start_tilt
-    margin[3] = math.pi * d_screw_tilt - f_screw_tilt * lead_tilt
+    margin[0] = -F_c_pan + F_s_pan  # requirement_0
+    # requirement_1
+    margin[1] = (2.0 * l_ground_tilt * r_arm_tilt - abs((l_ground_tilt * l_ground_tilt)
+        + (r_arm_tilt * r_arm_tilt) - ((l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt))))
+    margin[2] = s_max_tilt - s_start_tilt  # requirement_2
+    margin[3] = math.pi * d_screw_tilt - f_screw_tilt * lead_tilt  # requirement_3
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -4775,4 +1841,85 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 dbcc816d48062ffa7716811cae8cee8ae1f989f83522d2c77a9b1bce5655d05f
+# What the field calls some of these functions.
+vector_field, events, inverse_dynamics = mode_derivative, guards, equation_error
+
+
+# What follows is for fits and diagnoses; no function above uses it.
+# States without influence while these parameters are at their vanishing values.
+IDLE_STATES = ()
+# Relations: parameters, rule, strict; `margins` gives what is at least zero.
+REQUIREMENTS = (
+    (("F_c_pan", "F_s_pan"), "F_s is at least F_c; raise F_s or lower F_c", False),
+    (("l_ground_tilt", "l_min_tilt", "r_arm_tilt", "s_start_tilt"),
+     "the linkage closes, off its dead centres; change a length", True),
+    (("s_start_tilt", "s_max_tilt"), "s_start is at most s_max; change one of them", False),
+    (("lead_tilt", "d_screw_tilt", "f_screw_tilt"),
+     "the screw wedges unless f < pi d / lead; lower f_screw", True),
+)
+# Searching them: name, value at which the effect vanishes (None: any), starts,
+# period, what a frequency is locked to.
+SEARCH = (
+    ("b_pan", 0.0, (0.1,), None, None),
+    ("b_tilt", 0.0, (0.1,), None, None),
+    ("F_c_pan", 0.0, (0.05,), None, None),
+    ("F_s_pan", 0.0, (0.05,), None, None),
+    ("v_s_pan", None, (0.05,), None, None),
+    ("F_v_pan", 0.0, (0.0,), None, None),
+    ("a_F_c_pan", 0.0, (-0.1, 0.1), None, None),
+    ("a_F_s_pan", 0.0, (0.0,), None, None),
+    ("a_v_s_pan", 0.0, (0.0,), None, None),
+    ("a_F_v_pan", 0.0, (0.0,), None, None),
+    ("gap_pan", 0.0, (0.005, 0.02), None, None),
+    ("k_shaft_pan", None, (100.0, 3000.0), None, None),
+    ("d_shaft_pan", None, (1.0,), None, None),
+)
+# Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of the
+# effects that it acts on, title, reference, separating experiment, first member leads.
+EFFECTS = (
+    ("rigid_bodies", None, ("J_pan", "J_x_tilt", "J_y_tilt", "J_z_tilt"), (), (),
+     "pan body and tilt body", "thesis Eq. 3.8, Table 5.1", "", False),
+    ("payload", None, ("m_payload", "J_x_payload", "J_y_payload", "J_z_payload", "c_x_payload",
+     "c_y_payload", "c_z_payload"), (), (), "payload",
+     "thesis section 3.2.2, Table 5.3 with erratum 18", "", False),
+    ("viscous_friction", "pan", ("b_pan",), (), (), "viscous friction in the joint",
+     "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
+     "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
+    ("viscous_friction", "tilt", ("b_tilt",), (), (), "viscous friction in the joint",
+     "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
+     "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
+    ("csvs_friction", "pan", ("F_c_pan", "F_s_pan", "v_s_pan", "F_v_pan"), (("Coulomb friction",
+     ("F_c_pan",), (("F_s_pan", "F_c_pan"),)), ("Coulomb and viscous friction", ("F_c_pan",
+     "F_v_pan"), (("F_s_pan", "F_c_pan"),)), ("Coulomb and static friction, Stribeck curve",
+     ("F_c_pan", "F_s_pan", "v_s_pan"), ()), ("Coulomb, static, viscous and Stribeck friction",
+     ("F_c_pan", "F_s_pan", "v_s_pan", "F_v_pan"), ())), (),
+     "Coulomb, static, viscous and Stribeck friction",
+     "thesis Eq. 2.10, 2.11 with errata 2 and 3, Eq. 4.1, exponent 2",
+     "Crawl through standstill in both directions at several slow speeds.", False),
+    ("direction_dependent_friction", "pan", ("a_F_c_pan", "a_F_s_pan", "a_v_s_pan", "a_F_v_pan"),
+     (("Coulomb friction", ("a_F_c_pan",), ()), ("viscous friction", ("a_F_v_pan",), ()),
+     ("Coulomb and static friction", ("a_F_c_pan", "a_F_s_pan"), ()),
+     ("Coulomb and viscous friction", ("a_F_c_pan", "a_F_v_pan"), ()),
+     ("Coulomb, static and viscous friction", ("a_F_c_pan", "a_F_s_pan", "a_F_v_pan"), ()),
+     ("all of dry and viscous friction", ("a_F_c_pan", "a_F_s_pan", "a_v_s_pan", "a_F_v_pan"), ())),
+     ("csvs_friction@pan",), "friction that differs by direction",
+     "thesis Tables 4.1 and 4.2 (omega > 0, omega < 0)",
+     "Run the same speeds both ways at two supply polarities, or back-drive the joint "
+     "without power: friction follows the motion, an offset does not.", False),
+    ("backlash", "pan", ("gap_pan",), (), ("shaft_compliance@pan",), "backlash",
+     "thesis Eq. 2.16 (dead zone), Table 5.7; contact that cannot pull",
+     "Reverse slowly with and without a known preload torque on the joint: backlash "
+     "disappears under preload, presliding does not.", False),
+    ("shaft_compliance", "pan", ("k_shaft_pan", "d_shaft_pan"), (), (), "flexible shaft",
+     "thesis Eq. 2.15 with erratum 4, Table 5.7",
+     "Lock the motor and strike the joint, or excite with a 10 to 40 Hz chirp: a shaft"
+     " resonates, a delay only turns the phase, and a gap rings at no fixed frequency.", False),
+    ("dc_motor", "pan", ("L_pan", "R_pan", "K_t_pan", "J_motor_pan", "N_pan"), (), (),
+     "geared DC motor", "thesis Eq. 3.10, Eq. 3.11 with erratum 8", "", False),
+    ("linear_actuator", "tilt", ("L_tilt", "R_tilt", "K_t_tilt", "J_motor_tilt", "b_motor_tilt",
+     "N_tilt", "lead_tilt", "d_screw_tilt", "f_screw_tilt", "l_ground_tilt", "l_min_tilt",
+     "r_arm_tilt", "s_start_tilt", "s_max_tilt"), (), (),
+     "linear actuator with lead screw and linkage",
+     "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6", "", False),
+)
+# END sha256 92b49f2807a70052c9f5d44649137a263e6ae844c13143c47f389b63c07e6bee

@@ -28,7 +28,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "6e9cc9137bef1878"
+MODEL_HASH = "f5050564febb537a"
 NAME = "ideal"
 TITLE = "Balanced pan-tilt platform of the thesis"
 # How many numbers `prepare` writes.
@@ -37,8 +37,6 @@ AXES = ("pan", "tilt")
 STATE_NAMES = ("theta_pan", "theta_tilt", "omega_pan", "omega_tilt")
 STATE_UNITS = ("rad", "rad", "rad/s", "rad/s")
 STATE_INITIAL = (0.0, 0.0, 0.0, 0.0)
-# States without influence while these parameters are at their vanishing values.
-IDLE_STATES = ()
 INPUT_NAMES = ("tau_pan", "tau_tilt")
 INPUT_UNITS = ("N m", "N m")
 # Per input: index of the parameter by which it is late, or -1.
@@ -58,8 +56,6 @@ SAMPLED = ()
 CONTACT_ANGLES = ()
 # Limits of the equations: state, meaning; `domain` gives the bounds.
 DOMAIN = ()
-# Relations: parameters, rule, strict; `margins` gives what is at least zero.
-REQUIREMENTS = ()
 # Parameters: name, unit, default, lower and upper bound, meaning.
 PARAMETERS = (
     ("J_pan", "kg m^2", 0.00053, 1e-12, 10000.0, "inertia of the pan body about z"),
@@ -69,313 +65,220 @@ PARAMETERS = (
     ("b_pan", "N m s/rad", 0.1, 0.0, 10000.0, "viscous friction in the pan joint"),
     ("b_tilt", "N m s/rad", 0.1, 0.0, 10000.0, "viscous friction in the tilt joint"),
 )
-# Searching them: name, value at which the effect vanishes (None: any), starts,
-# period, what a frequency is locked to.
-SEARCH = (("b_pan", 0.0, (0.1,), None, None), ("b_tilt", 0.0, (0.1,), None, None))
-# Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of the
-# effects that it acts on, title, reference, separating experiment, first member leads.
-EFFECTS = (
-    (
-        "rigid_bodies",
-        None,
-        ("J_pan", "J_x_tilt", "J_y_tilt", "J_z_tilt"),
-        (),
-        (),
-        "pan body and tilt body",
-        "thesis Eq. 3.8, Table 5.1",
-        "",
-        False,
-    ),
-    (
-        "viscous_friction",
-        "pan",
-        ("b_pan",),
-        (),
-        (),
-        "viscous friction in the joint",
-        "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
-        "Run at six or more steady speeds, the slowest near the Stribeck speed.",
-        False,
-    ),
-    (
-        "viscous_friction",
-        "tilt",
-        ("b_tilt",),
-        (),
-        (),
-        "viscous friction in the joint",
-        "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
-        "Run at six or more steady speeds, the slowest near the Stribeck speed.",
-        False,
-    ),
-)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def mode_derivative(t, x, u, p, m, dx):
-    """Write the time derivative of the state into dx in the modes m.
-
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-    MODE_NAMES; dx [4] in STATE_UNITS per s.
-    """
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    tau_pan = u[0]
-    tau_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    b_pan = p[4]
-    b_tilt = p[5]
-    dx[0] = omega_pan
-    dx[1] = omega_tilt
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def constants(p):
+    """Return what depends on the parameters alone."""
+    J_pan, J_x_tilt, J_y_tilt, J_z_tilt = p[0], p[1], p[2], p[3]
     inertia_pan_sin_sq_tilt = J_x_tilt - J_z_tilt
+    inertia_pan = J_pan + J_z_tilt
+    inverse_mass_tilt = 1.0 / J_y_tilt
+    return (inertia_pan_sin_sq_tilt, inertia_pan, inverse_mass_tilt)
+
+
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def mass_and_forces(t, x, u, p, m, c):
+    """Return mass matrix, forces and what else the functions below have in common."""
+    theta_tilt, omega_pan, omega_tilt = x[1], x[2], x[3]
+    tau_pan, tau_tilt = u[0], u[1]
+    b_pan, b_tilt = p[4], p[5]
+    inertia_pan_sin_sq_tilt, inertia_pan = c[0], c[1]
+    cos_tilt = math.cos(theta_tilt)
     sin_tilt = math.sin(theta_tilt)
     inertia_pan_per_sin_tilt = inertia_pan_sin_sq_tilt * sin_tilt
-    coriolis = inertia_pan_per_sin_tilt * omega_pan * math.cos(theta_tilt)
+    coriolis = cos_tilt * inertia_pan_per_sin_tilt * omega_pan
     force_pan = -b_pan * omega_pan - 2.0 * coriolis * omega_tilt + tau_pan
-    inertia_pan = J_pan + J_z_tilt
     mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
-    inverse_mass_pan = 1.0 / mass_pan
-    accel_pan = force_pan * inverse_mass_pan
-    dx[2] = accel_pan
     force_tilt = -b_tilt * omega_tilt + coriolis * omega_pan + tau_tilt
-    inverse_mass_tilt = 1.0 / J_y_tilt
-    accel_tilt = force_tilt * inverse_mass_tilt
-    dx[3] = accel_tilt
+    return (force_pan, mass_pan, force_tilt)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def prepare(p, c):
     """Write into c what prepared_derivative takes from the parameters alone.
 
     p [6] in the units of PARAMETERS; c [3] of prepare.
+    c: inertia_pan_sin_sq_tilt, inertia_pan, inverse_mass_tilt.
     """
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    c[0] = J_x_tilt - J_z_tilt
-    c[1] = J_pan + J_z_tilt
-    c[2] = 1.0 / J_y_tilt
+    values = constants(p)
+    for k in range(PREPARED):
+        c[k] = values[k]
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def prepared_derivative(t, x, u, p, m, c, dx):
     """Write the time derivative of the state into dx in the modes m, c being prepared.
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-    MODE_NAMES; c [3] of prepare; dx [4] in STATE_UNITS per s.
+      MODE_NAMES; c [3] of prepare; dx [4] in STATE_UNITS per s.
+    dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt.
     """
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    tau_pan = u[0]
-    tau_tilt = u[1]
-    b_pan = p[4]
-    b_tilt = p[5]
-    inertia_pan_sin_sq_tilt = c[0]
-    inertia_pan = c[1]
+    forces = mass_and_forces(t, x, u, p, m, c)
+    force_pan, mass_pan, force_tilt = forces[0], forces[1], forces[2]
+    omega_pan, omega_tilt = x[2], x[3]
     inverse_mass_tilt = c[2]
-    dx[0] = omega_pan
-    dx[1] = omega_tilt
-    sin_tilt = math.sin(theta_tilt)
-    inertia_pan_per_sin_tilt = inertia_pan_sin_sq_tilt * sin_tilt
-    coriolis = inertia_pan_per_sin_tilt * omega_pan * math.cos(theta_tilt)
-    force_pan = -b_pan * omega_pan - 2.0 * coriolis * omega_tilt + tau_pan
-    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
+    dx[0] = omega_pan  # rate_of_theta_pan
+    dx[1] = omega_tilt  # rate_of_theta_tilt
     inverse_mass_pan = 1.0 / mass_pan
-    accel_pan = force_pan * inverse_mass_pan
-    dx[2] = accel_pan
-    force_tilt = -b_tilt * omega_tilt + coriolis * omega_pan + tau_tilt
-    accel_tilt = force_tilt * inverse_mass_tilt
-    dx[3] = accel_tilt
+    dx[2] = force_pan * inverse_mass_pan  # accel_pan
+    dx[3] = force_tilt * inverse_mass_tilt  # accel_tilt
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def jacobian(t, x, u, p, m, fx, fu, fp):
-    """Write the non-zero derivatives of mode_derivative by state, input and parameter.
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def mode_derivative(t, x, u, p, m, dx):
+    """Write the time derivative of the state into dx in the modes m.
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-    MODE_NAMES; fx [4, 4]; fu [4, 2]; fp [4, 6].
+      MODE_NAMES; dx [4] in STATE_UNITS per s.
+    dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt.
     """
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    tau_pan = u[0]
-    tau_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    b_pan = p[4]
-    b_tilt = p[5]
-    inertia_pan_sin_sq_tilt = J_x_tilt - J_z_tilt
-    sin_tilt = math.sin(theta_tilt)
-    inertia_pan_per_sin_tilt = inertia_pan_sin_sq_tilt * sin_tilt
-    cos_tilt = math.cos(theta_tilt)
-    coriolis_by_omega_pan = cos_tilt * inertia_pan_per_sin_tilt
-    coriolis = coriolis_by_omega_pan * omega_pan
-    twice_omega_tilt = 2.0 * omega_tilt
-    force_pan = -b_pan * omega_pan - coriolis * twice_omega_tilt + tau_pan
-    inertia_pan = J_pan + J_z_tilt
-    inertia_pan_per_sin_tilt_sin_tilt = inertia_pan_per_sin_tilt * sin_tilt
-    mass_pan = inertia_pan + inertia_pan_per_sin_tilt_sin_tilt
-    inverse_mass_pan = 1.0 / mass_pan
-    accel_pan = force_pan * inverse_mass_pan
-    inertia_pan_per_sin_tilt_by_theta_tilt = cos_tilt * inertia_pan_sin_sq_tilt
-    coriolis_by_theta_tilt = (
-        cos_tilt * inertia_pan_per_sin_tilt_by_theta_tilt * omega_pan
-        - inertia_pan_per_sin_tilt_sin_tilt * omega_pan
-    )
-    fx[2, 1] = inverse_mass_pan * (
-        -accel_pan * (coriolis_by_omega_pan + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt)
-        - coriolis_by_theta_tilt * twice_omega_tilt
-    )
-    inverse_mass_tilt = 1.0 / J_y_tilt
-    inverse_mass_tilt_omega_pan = inverse_mass_tilt * omega_pan
-    fx[3, 1] = coriolis_by_theta_tilt * inverse_mass_tilt_omega_pan
-    fx[0, 2] = 1.0
-    fx[2, 2] = inverse_mass_pan * (-b_pan - coriolis_by_omega_pan * twice_omega_tilt)
-    fx[3, 2] = inverse_mass_tilt * (coriolis + coriolis_by_omega_pan * omega_pan)
-    fx[1, 3] = 1.0
-    fx[2, 3] = -2.0 * coriolis * inverse_mass_pan
-    fx[3, 3] = -b_tilt * inverse_mass_tilt
-    fu[2, 0] = inverse_mass_pan
-    fu[3, 1] = inverse_mass_tilt
-    fp[2, 0] = -accel_pan * inverse_mass_pan
-    inertia_pan_per_sin_tilt_by_J_x_tilt = sin_tilt
-    cos_tilt_omega_pan = cos_tilt * omega_pan
-    coriolis_by_J_x_tilt = cos_tilt_omega_pan * inertia_pan_per_sin_tilt_by_J_x_tilt
-    fp[2, 1] = inverse_mass_pan * (
-        -accel_pan * inertia_pan_per_sin_tilt_by_J_x_tilt * sin_tilt
-        - coriolis_by_J_x_tilt * twice_omega_tilt
-    )
-    fp[3, 1] = coriolis_by_J_x_tilt * inverse_mass_tilt_omega_pan
-    force_tilt = -b_tilt * omega_tilt + coriolis * omega_pan + tau_tilt
-    accel_tilt = force_tilt * inverse_mass_tilt
-    fp[3, 2] = -accel_tilt * inverse_mass_tilt
-    inertia_pan_per_sin_tilt_by_J_z_tilt = -sin_tilt
-    coriolis_by_J_z_tilt = cos_tilt_omega_pan * inertia_pan_per_sin_tilt_by_J_z_tilt
-    fp[2, 3] = inverse_mass_pan * (
-        -accel_pan * (inertia_pan_per_sin_tilt_by_J_z_tilt * sin_tilt + 1.0)
-        - coriolis_by_J_z_tilt * twice_omega_tilt
-    )
-    fp[3, 3] = coriolis_by_J_z_tilt * inverse_mass_tilt_omega_pan
-    fp[2, 4] = -inverse_mass_pan * omega_pan
-    fp[3, 5] = -inverse_mass_tilt * omega_tilt
+    prepared_derivative(t, x, u, p, m, constants(p), dx)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def guards(t, x, u, p, m, g):
     """Write holding and breakaway torques, gap separations and contact torques into g.
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-    MODE_NAMES; g [0] in N m and rad.
+      MODE_NAMES; g [0] in N m and rad.
     """
     return
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def guard_jacobian(t, x, u, p, m, gx, gp):
-    """Write the non-zero derivatives of guards by state and parameter.
-
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-    MODE_NAMES; gx [0, 4]; gp [0, 6].
-    """
-    return
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def outputs(t, x, u, p, y):
-    """Write the measured signals into y.
-
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; y [2] in
-    OUTPUT_UNITS.
-    """
-    theta_pan = x[0]
-    theta_tilt = x[1]
-    y[0] = theta_pan
-    y[1] = theta_tilt
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def output_jacobian(t, x, u, p, yx, yp):
-    """Write the non-zero derivatives of outputs by state and parameter.
-
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; yx [2, 4];
-    yp [2, 6].
-    """
-    yx[0, 0] = 1.0
-    yx[1, 1] = 1.0
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def energy(t, x, u, p, m, e):
     """Write stored energy in J, power in and dissipated power in W into e.
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-    MODE_NAMES; e [3] in J, W and W.
+      MODE_NAMES; e [3] in J, W and W.
+    e: stored, power_in, dissipated.
     """
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    tau_pan = u[0]
-    tau_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    b_pan = p[4]
-    b_tilt = p[5]
-    omega_pan_sq = omega_pan * omega_pan
-    half_omega_pan_sq = 0.5 * omega_pan_sq
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    mass_pan = forces[1]
+    omega_pan, omega_tilt = x[2], x[3]
+    tau_pan, tau_tilt = u[0], u[1]
+    J_y_tilt, b_pan, b_tilt = p[2], p[4], p[5]
     omega_tilt_sq = omega_tilt * omega_tilt
-    e[0] = (
-        J_pan * half_omega_pan_sq
-        + J_x_tilt * half_omega_pan_sq * ((math.sin(theta_tilt)) * (math.sin(theta_tilt)))
-        + 0.5 * J_y_tilt * omega_tilt_sq
-        + J_z_tilt * half_omega_pan_sq * ((math.cos(theta_tilt)) * (math.cos(theta_tilt)))
-    )
-    e[1] = omega_pan * tau_pan + omega_tilt * tau_tilt
-    e[2] = b_pan * omega_pan_sq + b_tilt * omega_tilt_sq
+    omega_pan_sq = omega_pan * omega_pan
+    e[0] = 0.5 * J_y_tilt * omega_tilt_sq + 0.5 * mass_pan * omega_pan_sq  # stored
+    e[1] = omega_pan * tau_pan + omega_tilt * tau_tilt  # power_in
+    e[2] = b_pan * omega_pan_sq + b_tilt * omega_tilt_sq  # dissipated
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def equation_error(t, x, u, p, m, r):
-    """Write the torque that every row lacks, then rates of other states into r; x ends in accel.
+    """Write torques that rows lack, then other states' rates, into r; x ends in accelerations.
 
     t in s; x [6] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-    MODE_NAMES; r [2] in N m, then STATE_UNITS per s.
+      MODE_NAMES; r [2] in N m, then STATE_UNITS per s.
+    x: STATE_NAMES, then given_accel_pan, given_accel_tilt.
+    r: torque_pan, torque_tilt.
     """
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    accel_pan = x[4]
-    accel_tilt = x[5]
-    tau_pan = u[0]
-    tau_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    force_pan, mass_pan, force_tilt = forces[0], forces[1], forces[2]
+    given_accel_pan, given_accel_tilt = x[4], x[5]
     J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    b_pan = p[4]
-    b_tilt = p[5]
+    r[0] = -force_pan + given_accel_pan * mass_pan  # torque_pan
+    r[1] = J_y_tilt * given_accel_tilt - force_tilt  # torque_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
+    """Write the non-zero derivatives of dx into fx, fu, fp and those of guards into gx, gp.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
+      MODE_NAMES; fx [4, 4]; fu [4, 2]; fp [4, 6]; gx [0, 4]; gp [0, 6].
+    fx: rows and columns as STATE_NAMES.
+    fu: rows as STATE_NAMES, columns as INPUT_NAMES.
+    fp: rows as STATE_NAMES, columns as PARAMETERS.
+    gx: rows as g of guards, columns as STATE_NAMES.
+    gp: rows as g of guards, columns as PARAMETERS.
+    Where fp or gx is empty, it and what follows it is not computed.
+    """
+    theta_tilt, omega_pan, omega_tilt = x[1], x[2], x[3]
+    tau_pan, tau_tilt = u[0], u[1]
+    J_pan, J_x_tilt, J_y_tilt, J_z_tilt, b_pan, b_tilt = p[0], p[1], p[2], p[3], p[4], p[5]
+    inertia_pan = J_pan + J_z_tilt
     inertia_pan_sin_sq_tilt = J_x_tilt - J_z_tilt
     sin_tilt = math.sin(theta_tilt)
     inertia_pan_per_sin_tilt = inertia_pan_sin_sq_tilt * sin_tilt
-    coriolis = inertia_pan_per_sin_tilt * omega_pan * math.cos(theta_tilt)
-    force_pan = -b_pan * omega_pan - 2.0 * coriolis * omega_tilt + tau_pan
-    inertia_pan = J_pan + J_z_tilt
-    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
-    r[0] = accel_pan * mass_pan - force_pan
+    inertia_pan_per_sin_tilt_sin_tilt = inertia_pan_per_sin_tilt * sin_tilt
+    mass_pan = inertia_pan + inertia_pan_per_sin_tilt_sin_tilt
+    inverse_mass_pan = 1.0 / mass_pan
+    cos_tilt = math.cos(theta_tilt)
+    coriolis_by_inertia_pan_per_sin_tilt = cos_tilt * omega_pan
+    coriolis = coriolis_by_inertia_pan_per_sin_tilt * inertia_pan_per_sin_tilt
+    twice_omega_tilt = 2.0 * omega_tilt
+    force_pan = -b_pan * omega_pan - coriolis * twice_omega_tilt + tau_pan
+    accel_pan = force_pan * inverse_mass_pan
+    coriolis_by_omega_pan = cos_tilt * inertia_pan_per_sin_tilt
+    inertia_pan_per_sin_tilt_by_theta_tilt = cos_tilt * inertia_pan_sin_sq_tilt
+    coriolis_by_theta_tilt = (coriolis_by_inertia_pan_per_sin_tilt
+        * inertia_pan_per_sin_tilt_by_theta_tilt - inertia_pan_per_sin_tilt_sin_tilt * omega_pan)
+    fx[2, 1] = (inverse_mass_pan * (-accel_pan * (coriolis_by_omega_pan
+        + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt)
+        - coriolis_by_theta_tilt * twice_omega_tilt))  # accel_pan_by_theta_tilt
+    inverse_mass_tilt = 1.0 / J_y_tilt
+    fx[3, 1] = coriolis_by_theta_tilt * inverse_mass_tilt * omega_pan  # accel_tilt_by_theta_tilt
+    fx[0, 2] = 1.0  # rate_of_theta_pan_by_omega_pan
+    # accel_pan_by_omega_pan
+    fx[2, 2] = inverse_mass_pan * (-b_pan - coriolis_by_omega_pan * twice_omega_tilt)
+    # accel_tilt_by_omega_pan
+    fx[3, 2] = inverse_mass_tilt * (coriolis + coriolis_by_omega_pan * omega_pan)
+    fx[1, 3] = 1.0  # rate_of_theta_tilt_by_omega_tilt
+    fx[2, 3] = -2.0 * coriolis * inverse_mass_pan  # accel_pan_by_omega_tilt
+    fx[3, 3] = -b_tilt * inverse_mass_tilt  # accel_tilt_by_omega_tilt
+    fu[2, 0] = inverse_mass_pan  # accel_pan_by_tau_pan
+    fu[3, 1] = inverse_mass_tilt  # accel_tilt_by_tau_tilt
+    if len(fp) == 0:
+        return
+    accel_pan_by_inertia_pan = -accel_pan * inverse_mass_pan
+    fp[2, 0] = accel_pan_by_inertia_pan  # accel_pan_by_J_pan
+    coriolis_by_inertia_pan_sin_sq_tilt = coriolis_by_inertia_pan_per_sin_tilt * sin_tilt
+    accel_pan_by_inertia_pan_sin_sq_tilt = (inverse_mass_pan * (-accel_pan * (sin_tilt * sin_tilt)
+        - coriolis_by_inertia_pan_sin_sq_tilt * twice_omega_tilt))
+    fp[2, 1] = accel_pan_by_inertia_pan_sin_sq_tilt  # accel_pan_by_J_x_tilt
+    accel_tilt_by_inertia_pan_sin_sq_tilt = (coriolis_by_inertia_pan_sin_sq_tilt * inverse_mass_tilt
+        * omega_pan)
+    fp[3, 1] = accel_tilt_by_inertia_pan_sin_sq_tilt  # accel_tilt_by_J_x_tilt
     force_tilt = -b_tilt * omega_tilt + coriolis * omega_pan + tau_tilt
-    r[1] = J_y_tilt * accel_tilt - force_tilt
+    accel_tilt = force_tilt * inverse_mass_tilt
+    fp[3, 2] = -accel_tilt * inverse_mass_tilt  # accel_tilt_by_J_y_tilt
+    # accel_pan_by_J_z_tilt
+    fp[2, 3] = accel_pan_by_inertia_pan - accel_pan_by_inertia_pan_sin_sq_tilt
+    fp[3, 3] = -accel_tilt_by_inertia_pan_sin_sq_tilt  # accel_tilt_by_J_z_tilt
+    fp[2, 4] = -inverse_mass_pan * omega_pan  # accel_pan_by_b_pan
+    fp[3, 5] = -inverse_mass_tilt * omega_tilt  # accel_tilt_by_b_tilt
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def outputs(t, x, u, p, y):
+    """Write the measured signals into y.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; y [2] in
+      OUTPUT_UNITS.
+    y: reading_theta_pan, reading_theta_tilt.
+    """
+    theta_pan, theta_tilt = x[0], x[1]
+    y[0] = theta_pan  # reading_theta_pan
+    y[1] = theta_tilt  # reading_theta_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def output_jacobian(t, x, u, p, yx, yp):
+    """Write the non-zero derivatives of outputs by state and parameter.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; yx [2, 4];
+      yp [2, 6].
+    """
+    yx[0, 0] = 1.0  # reading_theta_pan_by_theta_pan
+    yx[1, 1] = 1.0  # reading_theta_tilt_by_theta_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def domain(p, bounds):
     """Write lower and upper bound of the state of every row of DOMAIN into bounds.
 
@@ -384,7 +287,7 @@ def domain(p, bounds):
     return
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def margins(p, margin):
     """Write by how much the parameters meet every row of REQUIREMENTS into margin.
 
@@ -393,16 +296,40 @@ def margins(p, margin):
     return
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def initial_modes(t, x, u, p, m):
     """Leave m alone: this model has no modes."""
     return
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def state_derivative(t, x, u, p, dx):
     """Write the time derivative of the state into dx."""
-    mode_derivative(t, x, u, p, x, dx)
+    mode_derivative(t, x, u, p, (), dx)
 
 
-# END sha256 07f64219ce5a3c97009cdfaca6ed4d512d97339fa18708f41347d3b611e13d6b
+# What the field calls some of these functions.
+vector_field, events, inverse_dynamics = mode_derivative, guards, equation_error
+
+
+# What follows is for fits and diagnoses; no function above uses it.
+# States without influence while these parameters are at their vanishing values.
+IDLE_STATES = ()
+# Relations: parameters, rule, strict; `margins` gives what is at least zero.
+REQUIREMENTS = ()
+# Searching them: name, value at which the effect vanishes (None: any), starts,
+# period, what a frequency is locked to.
+SEARCH = (("b_pan", 0.0, (0.1,), None, None), ("b_tilt", 0.0, (0.1,), None, None))
+# Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of the
+# effects that it acts on, title, reference, separating experiment, first member leads.
+EFFECTS = (
+    ("rigid_bodies", None, ("J_pan", "J_x_tilt", "J_y_tilt", "J_z_tilt"), (), (),
+     "pan body and tilt body", "thesis Eq. 3.8, Table 5.1", "", False),
+    ("viscous_friction", "pan", ("b_pan",), (), (), "viscous friction in the joint",
+     "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
+     "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
+    ("viscous_friction", "tilt", ("b_tilt",), (), (), "viscous friction in the joint",
+     "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
+     "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
+)
+# END sha256 d6e34ea0be76f629f2e3bf08f5016b0702cd83253e8d0ee795cf878a2d718ada

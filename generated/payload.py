@@ -43,7 +43,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "c5e7ce6739319ae6"
+MODEL_HASH = "d41a8b69f7d722e7"
 NAME = "payload"
 TITLE = "Pan-tilt platform of the thesis with its payload"
 # How many numbers `prepare` writes.
@@ -52,8 +52,6 @@ AXES = ("pan", "tilt")
 STATE_NAMES = ("theta_pan", "theta_tilt", "omega_pan", "omega_tilt")
 STATE_UNITS = ("rad", "rad", "rad/s", "rad/s")
 STATE_INITIAL = (0.0, 0.0, 0.0, 0.0)
-# States without influence while these parameters are at their vanishing values.
-IDLE_STATES = ()
 INPUT_NAMES = ("tau_pan", "tau_tilt")
 INPUT_UNITS = ("N m", "N m")
 # Per input: index of the parameter by which it is late, or -1.
@@ -73,8 +71,6 @@ SAMPLED = ()
 CONTACT_ANGLES = ()
 # Limits of the equations: state, meaning; `domain` gives the bounds.
 DOMAIN = ()
-# Relations: parameters, rule, strict; `margins` gives what is at least zero.
-REQUIREMENTS = ()
 # Parameters: name, unit, default, lower and upper bound, meaning.
 PARAMETERS = (
     ("J_pan", "kg m^2", 0.00053, 1e-12, 10000.0, "inertia of the pan body about z"),
@@ -92,306 +88,192 @@ PARAMETERS = (
     ("b_tilt", "N m s/rad", 0.1, 0.0, 10000.0, "viscous friction in the tilt joint"),
     ("gravity", "m/s^2", 9.81, 0.0, 1000.0, "gravitational acceleration"),
 )
-# Searching them: name, value at which the effect vanishes (None: any), starts,
-# period, what a frequency is locked to.
-SEARCH = (("b_pan", 0.0, (0.1,), None, None), ("b_tilt", 0.0, (0.1,), None, None))
-# Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of the
-# effects that it acts on, title, reference, separating experiment, first member leads.
-EFFECTS = (
-    (
-        "rigid_bodies",
-        None,
-        ("J_pan", "J_x_tilt", "J_y_tilt", "J_z_tilt"),
-        (),
-        (),
-        "pan body and tilt body",
-        "thesis Eq. 3.8, Table 5.1",
-        "",
-        False,
-    ),
-    (
-        "payload",
-        None,
-        (
-            "m_payload",
-            "J_x_payload",
-            "J_y_payload",
-            "J_z_payload",
-            "c_x_payload",
-            "c_y_payload",
-            "c_z_payload",
-        ),
-        (),
-        (),
-        "payload",
-        "thesis section 3.2.2, Table 5.3 with erratum 18",
-        "",
-        False,
-    ),
-    (
-        "viscous_friction",
-        "pan",
-        ("b_pan",),
-        (),
-        (),
-        "viscous friction in the joint",
-        "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
-        "Run at six or more steady speeds, the slowest near the Stribeck speed.",
-        False,
-    ),
-    (
-        "viscous_friction",
-        "tilt",
-        ("b_tilt",),
-        (),
-        (),
-        "viscous friction in the joint",
-        "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
-        "Run at six or more steady speeds, the slowest near the Stribeck speed.",
-        False,
-    ),
-)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def mode_derivative(t, x, u, p, m, dx):
-    """Write the time derivative of the state into dx in the modes m.
-
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
-    see MODE_NAMES; dx [4] in STATE_UNITS per s.
-    """
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    tau_pan = u[0]
-    tau_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    b_pan = p[11]
-    b_tilt = p[12]
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def constants(p):
+    """Return what depends on the parameters alone."""
+    J_pan, J_x_tilt, J_y_tilt, J_z_tilt, m_payload, J_x_payload = p[0], p[1], p[2], p[3], p[4], p[5]
+    J_y_payload, J_z_payload, c_x_payload, c_y_payload, c_z_payload = p[6], p[7], p[8], p[9], p[10]
     gravity = p[13]
-    dx[0] = omega_pan
-    dx[1] = omega_tilt
     inertia_pan_sin_cos_tilt = 2.0 * c_x_payload * c_z_payload * m_payload
-    inertia_pan_sin_sq_tilt_term = (c_x_payload * c_x_payload) * m_payload
-    inertia_pan_sin_sq_tilt_term_2 = (c_z_payload * c_z_payload) * m_payload
-    inertia_pan_sin_sq_tilt = (
-        J_x_payload
-        + J_x_tilt
-        - J_z_payload
-        - J_z_tilt
-        - inertia_pan_sin_sq_tilt_term
-        + inertia_pan_sin_sq_tilt_term_2
-    )
-    cos_tilt = math.cos(theta_tilt)
-    sin_tilt = math.sin(theta_tilt)
-    inertia_pan_per_sin_tilt = (
-        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
-    )
-    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
+    c_z_payload_sq_m_payload = (c_z_payload * c_z_payload) * m_payload
+    c_x_payload_sq_m_payload = (c_x_payload * c_x_payload) * m_payload
+    inertia_pan_sin_sq_tilt = (J_x_payload + J_x_tilt - J_z_payload - J_z_tilt
+        - c_x_payload_sq_m_payload + c_z_payload_sq_m_payload)
     c_y_payload_m_payload = c_y_payload * m_payload
     coupling_cos_tilt = c_y_payload_m_payload * c_z_payload
     coupling_sin_tilt = c_x_payload * c_y_payload_m_payload
-    force_pan = (
-        -b_pan * omega_pan
-        - omega_tilt
-        * (coriolis + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt))
-        + tau_pan
-    )
     gravity_m_payload = gravity * m_payload
     gravity_cos_tilt = c_x_payload * gravity_m_payload
     gravity_sin_tilt = c_z_payload * gravity_m_payload
-    force_tilt = (
-        -b_tilt * omega_tilt
-        + 0.5 * coriolis * omega_pan
-        + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt
-        + tau_tilt
-    )
-    inertia_tilt = (
-        J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term + inertia_pan_sin_sq_tilt_term_2
-    )
-    inertia_pan = (
-        J_pan
-        + J_z_payload
-        + J_z_tilt
-        + (c_y_payload * c_y_payload) * m_payload
-        + inertia_pan_sin_sq_tilt_term
-    )
+    inertia_tilt = J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
+    inertia_pan = (J_pan + J_z_payload + J_z_tilt + c_x_payload_sq_m_payload
+        + (c_y_payload * c_y_payload) * m_payload)
+    return (inertia_pan_sin_cos_tilt, inertia_pan_sin_sq_tilt, coupling_cos_tilt, coupling_sin_tilt,
+        gravity_cos_tilt, gravity_sin_tilt, inertia_tilt, inertia_pan)
+
+
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def mass_and_forces(t, x, u, p, m, c):
+    """Return mass matrix, forces and what else the functions below have in common."""
+    theta_tilt, omega_pan, omega_tilt = x[1], x[2], x[3]
+    tau_pan, tau_tilt = u[0], u[1]
+    b_pan, b_tilt = p[11], p[12]
+    inertia_pan_sin_cos_tilt, inertia_pan_sin_sq_tilt, coupling_cos_tilt = c[0], c[1], c[2]
+    coupling_sin_tilt, gravity_cos_tilt, gravity_sin_tilt, inertia_pan = c[3], c[4], c[5], c[7]
+    cos_tilt = math.cos(theta_tilt)
+    sin_tilt = math.sin(theta_tilt)
+    inertia_pan_per_sin_tilt = (cos_tilt * inertia_pan_sin_cos_tilt
+        + inertia_pan_sin_sq_tilt * sin_tilt)
+    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
+    force_pan = (-b_pan * omega_pan - omega_tilt * (coriolis
+        + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt)) + tau_pan)
+    force_tilt = (-b_tilt * omega_tilt + 0.5 * coriolis * omega_pan + cos_tilt * gravity_cos_tilt
+        + gravity_sin_tilt * sin_tilt + tau_tilt)
     mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
     mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
-    inverse_determinant = 1.0 / (inertia_tilt * mass_pan - (mass_pan_tilt * mass_pan_tilt))
-    accel_pan = inverse_determinant * (force_pan * inertia_tilt - force_tilt * mass_pan_tilt)
-    dx[2] = accel_pan
-    accel_tilt = inverse_determinant * (-force_pan * mass_pan_tilt + force_tilt * mass_pan)
-    dx[3] = accel_tilt
+    return (cos_tilt, sin_tilt, force_pan, force_tilt, mass_pan, mass_pan_tilt)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def prepare(p, c):
     """Write into c what prepared_derivative takes from the parameters alone.
 
     p [14] in the units of PARAMETERS; c [8] of prepare.
+    c: inertia_pan_sin_cos_tilt, inertia_pan_sin_sq_tilt, coupling_cos_tilt, coupling_sin_tilt,
+      gravity_cos_tilt, gravity_sin_tilt, inertia_tilt, inertia_pan.
     """
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    gravity = p[13]
-    c[0] = 2.0 * c_x_payload * c_z_payload * m_payload
-    inertia_pan_sin_sq_tilt_term = (c_x_payload * c_x_payload) * m_payload
-    inertia_pan_sin_sq_tilt_term_2 = (c_z_payload * c_z_payload) * m_payload
-    c[1] = (
-        J_x_payload
-        + J_x_tilt
-        - J_z_payload
-        - J_z_tilt
-        - inertia_pan_sin_sq_tilt_term
-        + inertia_pan_sin_sq_tilt_term_2
-    )
-    c_y_payload_m_payload = c_y_payload * m_payload
-    c[2] = c_y_payload_m_payload * c_z_payload
-    c[3] = c_x_payload * c_y_payload_m_payload
-    gravity_m_payload = gravity * m_payload
-    c[4] = c_x_payload * gravity_m_payload
-    c[5] = c_z_payload * gravity_m_payload
-    c[6] = J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term + inertia_pan_sin_sq_tilt_term_2
-    c[7] = (
-        J_pan
-        + J_z_payload
-        + J_z_tilt
-        + (c_y_payload * c_y_payload) * m_payload
-        + inertia_pan_sin_sq_tilt_term
-    )
+    values = constants(p)
+    for k in range(PREPARED):
+        c[k] = values[k]
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def prepared_derivative(t, x, u, p, m, c, dx):
     """Write the time derivative of the state into dx in the modes m, c being prepared.
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
-    see MODE_NAMES; c [8] of prepare; dx [4] in STATE_UNITS per s.
+      see MODE_NAMES; c [8] of prepare; dx [4] in STATE_UNITS per s.
+    dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt.
     """
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    tau_pan = u[0]
-    tau_tilt = u[1]
-    b_pan = p[11]
-    b_tilt = p[12]
-    inertia_pan_sin_cos_tilt = c[0]
-    inertia_pan_sin_sq_tilt = c[1]
-    coupling_cos_tilt = c[2]
-    coupling_sin_tilt = c[3]
-    gravity_cos_tilt = c[4]
-    gravity_sin_tilt = c[5]
+    forces = mass_and_forces(t, x, u, p, m, c)
+    force_pan, force_tilt, mass_pan, mass_pan_tilt = forces[2], forces[3], forces[4], forces[5]
+    omega_pan, omega_tilt = x[2], x[3]
     inertia_tilt = c[6]
-    inertia_pan = c[7]
-    dx[0] = omega_pan
-    dx[1] = omega_tilt
-    cos_tilt = math.cos(theta_tilt)
-    sin_tilt = math.sin(theta_tilt)
-    inertia_pan_per_sin_tilt = (
-        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
-    )
-    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
-    force_pan = (
-        -b_pan * omega_pan
-        - omega_tilt
-        * (coriolis + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt))
-        + tau_pan
-    )
-    force_tilt = (
-        -b_tilt * omega_tilt
-        + 0.5 * coriolis * omega_pan
-        + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt
-        + tau_tilt
-    )
-    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
-    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
+    dx[0] = omega_pan  # rate_of_theta_pan
+    dx[1] = omega_tilt  # rate_of_theta_tilt
     inverse_determinant = 1.0 / (inertia_tilt * mass_pan - (mass_pan_tilt * mass_pan_tilt))
-    accel_pan = inverse_determinant * (force_pan * inertia_tilt - force_tilt * mass_pan_tilt)
-    dx[2] = accel_pan
-    accel_tilt = inverse_determinant * (-force_pan * mass_pan_tilt + force_tilt * mass_pan)
-    dx[3] = accel_tilt
+    # accel_pan
+    dx[2] = inverse_determinant * (force_pan * inertia_tilt - force_tilt * mass_pan_tilt)
+    dx[3] = inverse_determinant * (-force_pan * mass_pan_tilt + force_tilt * mass_pan)  # accel_tilt
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def jacobian(t, x, u, p, m, fx, fu, fp):
-    """Write the non-zero derivatives of mode_derivative by state, input and parameter.
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def mode_derivative(t, x, u, p, m, dx):
+    """Write the time derivative of the state into dx in the modes m.
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
-    see MODE_NAMES; fx [4, 4]; fu [4, 2]; fp [4, 14].
+      see MODE_NAMES; dx [4] in STATE_UNITS per s.
+    dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt.
     """
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    tau_pan = u[0]
-    tau_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    b_pan = p[11]
-    b_tilt = p[12]
-    gravity = p[13]
-    c_x_payload_sq = c_x_payload * c_x_payload
-    c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
+    prepared_derivative(t, x, u, p, m, constants(p), dx)
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def guards(t, x, u, p, m, g):
+    """Write holding and breakaway torques, gap separations and contact torques into g.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
+      see MODE_NAMES; g [0] in N m and rad.
+    """
+    return
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def energy(t, x, u, p, m, e):
+    """Write stored energy in J, power in and dissipated power in W into e.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
+      see MODE_NAMES; e [3] in J, W and W.
+    e: stored, power_in, dissipated.
+    """
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    cos_tilt, sin_tilt, mass_pan, mass_pan_tilt = forces[0], forces[1], forces[4], forces[5]
+    omega_pan, omega_tilt = x[2], x[3]
+    tau_pan, tau_tilt = u[0], u[1]
+    b_pan, b_tilt = p[11], p[12]
+    gravity_cos_tilt, gravity_sin_tilt, inertia_tilt = c[4], c[5], c[6]
+    omega_tilt_sq = omega_tilt * omega_tilt
+    omega_pan_sq = omega_pan * omega_pan
+    e[0] = (cos_tilt * gravity_sin_tilt - gravity_cos_tilt * sin_tilt
+        + 0.5 * inertia_tilt * omega_tilt_sq + 0.5 * mass_pan * omega_pan_sq
+        + mass_pan_tilt * omega_pan * omega_tilt)  # stored
+    e[1] = omega_pan * tau_pan + omega_tilt * tau_tilt  # power_in
+    e[2] = b_pan * omega_pan_sq + b_tilt * omega_tilt_sq  # dissipated
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def equation_error(t, x, u, p, m, r):
+    """Write torques that rows lack, then other states' rates, into r; x ends in accelerations.
+
+    t in s; x [6] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
+      see MODE_NAMES; r [2] in N m, then STATE_UNITS per s.
+    x: STATE_NAMES, then given_accel_pan, given_accel_tilt.
+    r: torque_pan, torque_tilt.
+    """
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    force_pan, force_tilt, mass_pan, mass_pan_tilt = forces[2], forces[3], forces[4], forces[5]
+    given_accel_pan, given_accel_tilt = x[4], x[5]
+    inertia_tilt = c[6]
+    r[0] = -force_pan + given_accel_pan * mass_pan + given_accel_tilt * mass_pan_tilt  # torque_pan
+    # torque_tilt
+    r[1] = -force_tilt + given_accel_pan * mass_pan_tilt + given_accel_tilt * inertia_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
+    """Write the non-zero derivatives of dx into fx, fu, fp and those of guards into gx, gp.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
+      see MODE_NAMES; fx [4, 4]; fu [4, 2]; fp [4, 14]; gx [0, 4]; gp [0, 14].
+    fx: rows and columns as STATE_NAMES.
+    fu: rows as STATE_NAMES, columns as INPUT_NAMES.
+    fp: rows as STATE_NAMES, columns as PARAMETERS.
+    gx: rows as g of guards, columns as STATE_NAMES.
+    gp: rows as g of guards, columns as PARAMETERS.
+    Where fp or gx is empty, it and what follows it is not computed.
+    """
+    theta_tilt, omega_pan, omega_tilt = x[1], x[2], x[3]
+    tau_pan, tau_tilt = u[0], u[1]
+    J_pan, J_x_tilt, J_y_tilt, J_z_tilt, m_payload, J_x_payload = p[0], p[1], p[2], p[3], p[4], p[5]
+    J_y_payload, J_z_payload, c_x_payload, c_y_payload, c_z_payload = p[6], p[7], p[8], p[9], p[10]
+    b_pan, b_tilt, gravity = p[11], p[12], p[13]
     c_z_payload_sq = c_z_payload * c_z_payload
     c_z_payload_sq_m_payload = c_z_payload_sq * m_payload
+    c_x_payload_sq = c_x_payload * c_x_payload
+    c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
     inertia_tilt = J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
     c_y_payload_sq = c_y_payload * c_y_payload
-    inertia_pan = (
-        J_pan + J_z_payload + J_z_tilt + c_x_payload_sq_m_payload + c_y_payload_sq * m_payload
-    )
-    gravity_cos_tilt_by_gravity = c_x_payload * m_payload
-    inertia_tilt_by_c_x_payload = 2.0 * gravity_cos_tilt_by_gravity
-    inertia_pan_sin_cos_tilt = c_z_payload * inertia_tilt_by_c_x_payload
-    inertia_pan_sin_sq_tilt = (
-        J_x_payload
-        + J_x_tilt
-        - J_z_payload
-        - J_z_tilt
-        - c_x_payload_sq_m_payload
-        + c_z_payload_sq_m_payload
-    )
+    inertia_pan = (J_pan + J_z_payload + J_z_tilt + c_x_payload_sq_m_payload
+        + c_y_payload_sq * m_payload)
     cos_tilt = math.cos(theta_tilt)
+    gravity_sin_tilt_by_gravity = c_z_payload * m_payload
+    inertia_tilt_by_c_z_payload = 2.0 * gravity_sin_tilt_by_gravity
+    inertia_pan_sin_cos_tilt = c_x_payload * inertia_tilt_by_c_z_payload
+    inertia_pan_sin_sq_tilt = (J_x_payload + J_x_tilt - J_z_payload - J_z_tilt
+        - c_x_payload_sq_m_payload + c_z_payload_sq_m_payload)
     sin_tilt = math.sin(theta_tilt)
-    inertia_pan_per_sin_tilt = (
-        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
-    )
+    inertia_pan_per_sin_tilt = (cos_tilt * inertia_pan_sin_cos_tilt
+        + inertia_pan_sin_sq_tilt * sin_tilt)
     inertia_pan_per_sin_tilt_sin_tilt = inertia_pan_per_sin_tilt * sin_tilt
     mass_pan = inertia_pan + inertia_pan_per_sin_tilt_sin_tilt
-    coupling_cos_tilt_by_c_z_payload = c_y_payload * m_payload
-    coupling_cos_tilt = c_z_payload * coupling_cos_tilt_by_c_z_payload
-    coupling_sin_tilt_by_m_payload = c_x_payload * c_y_payload
-    coupling_sin_tilt = coupling_sin_tilt_by_m_payload * m_payload
-    mass_pan_tilt_term = cos_tilt * coupling_cos_tilt - coupling_sin_tilt * sin_tilt
-    mass_pan_tilt = -mass_pan_tilt_term
+    coupling_sin_tilt_by_c_x_payload = c_y_payload * m_payload
+    coupling_cos_tilt = c_z_payload * coupling_sin_tilt_by_c_x_payload
+    coupling_sin_tilt = c_x_payload * coupling_sin_tilt_by_c_x_payload
+    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
     inverse_determinant = 1.0 / (inertia_tilt * mass_pan - (mass_pan_tilt * mass_pan_tilt))
     cos_tilt_inertia_pan_per_sin_tilt = cos_tilt * inertia_pan_per_sin_tilt
     coriolis_by_omega_pan = 2.0 * cos_tilt_inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt
@@ -399,464 +281,203 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     force_pan_term = cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt
     force_pan_term_omega_tilt = force_pan_term * omega_tilt
     force_pan = -b_pan * omega_pan - omega_tilt * (coriolis + force_pan_term_omega_tilt) + tau_pan
-    gravity_cos_tilt = gravity * gravity_cos_tilt_by_gravity
-    gravity_sin_tilt_by_gravity = c_z_payload * m_payload
-    gravity_sin_tilt = gravity * gravity_sin_tilt_by_gravity
-    half_coriolis = 0.5 * coriolis
-    force_tilt = (
-        -b_tilt * omega_tilt
-        + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt
-        + half_coriolis * omega_pan
-        + tau_tilt
-    )
+    gravity_cos_tilt_by_c_x_payload = gravity * m_payload
+    gravity_cos_tilt = c_x_payload * gravity_cos_tilt_by_c_x_payload
+    gravity_sin_tilt = c_z_payload * gravity_cos_tilt_by_c_x_payload
+    force_tilt_by_coriolis = 0.5 * omega_pan
+    force_tilt = (-b_tilt * omega_tilt + coriolis * force_tilt_by_coriolis
+        + cos_tilt * gravity_cos_tilt + gravity_sin_tilt * sin_tilt + tau_tilt)
     accel_pan = inverse_determinant * (force_pan * inertia_tilt - force_tilt * mass_pan_tilt)
-    inertia_pan_per_sin_tilt_by_theta_tilt = (
-        cos_tilt * inertia_pan_sin_sq_tilt - inertia_pan_sin_cos_tilt * sin_tilt
-    )
-    twice_omega_pan = 2.0 * omega_pan
-    coriolis_by_theta_tilt = (
-        2.0 * cos_tilt * inertia_pan_per_sin_tilt_by_theta_tilt * omega_pan
-        - inertia_pan_per_sin_tilt_sin_tilt * twice_omega_pan
-    )
-    accel_pan_by_theta_tilt_term = (
-        -accel_pan * force_pan_term
-        + 0.5 * coriolis_by_theta_tilt * omega_pan
-        + cos_tilt * gravity_sin_tilt
-        - gravity_cos_tilt * sin_tilt
-    )
     accel_tilt = inverse_determinant * (-force_pan * mass_pan_tilt + force_tilt * mass_pan)
+    inertia_pan_per_sin_tilt_by_theta_tilt = (cos_tilt * inertia_pan_sin_sq_tilt
+        - inertia_pan_sin_cos_tilt * sin_tilt)
+    twice_omega_pan = 2.0 * omega_pan
+    coriolis_by_inertia_pan_per_sin_tilt = cos_tilt * twice_omega_pan
+    coriolis_by_theta_tilt = (coriolis_by_inertia_pan_per_sin_tilt
+        * inertia_pan_per_sin_tilt_by_theta_tilt - inertia_pan_per_sin_tilt_sin_tilt
+        * twice_omega_pan)
     omega_tilt_sq = omega_tilt * omega_tilt
-    accel_pan_by_theta_tilt_term_2 = (
-        -accel_pan
-        * (cos_tilt_inertia_pan_per_sin_tilt + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt)
-        - accel_tilt * force_pan_term
-        - coriolis_by_theta_tilt * omega_tilt
-        - mass_pan_tilt_term * omega_tilt_sq
-    )
-    fx[2, 1] = inverse_determinant * (
-        -accel_pan_by_theta_tilt_term * mass_pan_tilt
-        + accel_pan_by_theta_tilt_term_2 * inertia_tilt
-    )
-    fx[3, 1] = inverse_determinant * (
-        accel_pan_by_theta_tilt_term * mass_pan - accel_pan_by_theta_tilt_term_2 * mass_pan_tilt
-    )
-    fx[0, 2] = 1.0
-    half_omega_pan = 0.5 * omega_pan
-    accel_pan_by_omega_pan_term = coriolis_by_omega_pan * half_omega_pan + half_coriolis
-    accel_pan_by_omega_pan_term_2 = -b_pan - coriolis_by_omega_pan * omega_tilt
-    fx[2, 2] = inverse_determinant * (
-        -accel_pan_by_omega_pan_term * mass_pan_tilt + accel_pan_by_omega_pan_term_2 * inertia_tilt
-    )
-    fx[3, 2] = inverse_determinant * (
-        accel_pan_by_omega_pan_term * mass_pan - accel_pan_by_omega_pan_term_2 * mass_pan_tilt
-    )
-    fx[1, 3] = 1.0
-    accel_pan_by_omega_tilt_term = -coriolis - 2.0 * force_pan_term_omega_tilt
-    fx[2, 3] = inverse_determinant * (
-        accel_pan_by_omega_tilt_term * inertia_tilt + b_tilt * mass_pan_tilt
-    )
-    fx[3, 3] = inverse_determinant * (
-        -accel_pan_by_omega_tilt_term * mass_pan_tilt - b_tilt * mass_pan
-    )
-    inertia_tilt_inverse_determinant = inertia_tilt * inverse_determinant
-    fu[2, 0] = inertia_tilt_inverse_determinant
+    balance_pan_by_theta_tilt = (-accel_pan * (cos_tilt_inertia_pan_per_sin_tilt
+        + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt) - accel_tilt * force_pan_term
+        - coriolis_by_theta_tilt * omega_tilt + mass_pan_tilt * omega_tilt_sq)
+    balance_tilt_by_theta_tilt = (-accel_pan * force_pan_term
+        + coriolis_by_theta_tilt * force_tilt_by_coriolis + cos_tilt * gravity_sin_tilt
+        - gravity_cos_tilt * sin_tilt)
+    fx[2, 1] = (inverse_determinant * (balance_pan_by_theta_tilt * inertia_tilt
+        - balance_tilt_by_theta_tilt * mass_pan_tilt))  # accel_pan_by_theta_tilt
+    fx[3, 1] = (inverse_determinant * (-balance_pan_by_theta_tilt * mass_pan_tilt
+        + balance_tilt_by_theta_tilt * mass_pan))  # accel_tilt_by_theta_tilt
+    fx[0, 2] = 1.0  # rate_of_theta_pan_by_omega_pan
+    balance_pan_by_omega_pan = -b_pan - coriolis_by_omega_pan * omega_tilt
+    balance_tilt_by_omega_pan = 0.5 * coriolis + coriolis_by_omega_pan * force_tilt_by_coriolis
+    fx[2, 2] = (inverse_determinant * (balance_pan_by_omega_pan * inertia_tilt
+        - balance_tilt_by_omega_pan * mass_pan_tilt))  # accel_pan_by_omega_pan
+    fx[3, 2] = (inverse_determinant * (-balance_pan_by_omega_pan * mass_pan_tilt
+        + balance_tilt_by_omega_pan * mass_pan))  # accel_tilt_by_omega_pan
+    fx[1, 3] = 1.0  # rate_of_theta_tilt_by_omega_tilt
+    balance_pan_by_omega_tilt = -coriolis - 2.0 * force_pan_term_omega_tilt
+    fx[2, 3] = (inverse_determinant * (b_tilt * mass_pan_tilt
+        + balance_pan_by_omega_tilt * inertia_tilt))  # accel_pan_by_omega_tilt
+    fx[3, 3] = (inverse_determinant * (-b_tilt * mass_pan
+        - balance_pan_by_omega_tilt * mass_pan_tilt))  # accel_tilt_by_omega_tilt
+    accel_pan_by_tau_pan = inertia_tilt * inverse_determinant
+    fu[2, 0] = accel_pan_by_tau_pan
     inverse_determinant_mass_pan_tilt = inverse_determinant * mass_pan_tilt
-    minus_inverse_determinant_mass_pan_tilt = -inverse_determinant_mass_pan_tilt
-    fu[3, 0] = minus_inverse_determinant_mass_pan_tilt
-    fu[2, 1] = minus_inverse_determinant_mass_pan_tilt
-    inverse_determinant_mass_pan = inverse_determinant * mass_pan
-    fu[3, 1] = inverse_determinant_mass_pan
-    accel_pan_by_J_pan_term = accel_pan
-    fp[2, 0] = -accel_pan_by_J_pan_term * inertia_tilt_inverse_determinant
-    fp[3, 0] = accel_pan_by_J_pan_term * inverse_determinant_mass_pan_tilt
-    inertia_pan_per_sin_tilt_by_J_x_tilt = sin_tilt
-    cos_tilt_twice_omega_pan = cos_tilt * twice_omega_pan
-    coriolis_by_J_x_tilt = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_x_tilt
-    coriolis_by_J_x_tilt_half_omega_pan = coriolis_by_J_x_tilt * half_omega_pan
+    fu[3, 0] = -inverse_determinant_mass_pan_tilt  # accel_tilt_by_tau_pan
+    fu[2, 1] = -inverse_determinant_mass_pan_tilt  # accel_pan_by_tau_tilt
+    accel_tilt_by_tau_tilt = inverse_determinant * mass_pan
+    fu[3, 1] = accel_tilt_by_tau_tilt
+    if len(fp) == 0:
+        return
+    accel_pan_by_inertia_pan = -accel_pan * accel_pan_by_tau_pan
+    fp[2, 0] = accel_pan_by_inertia_pan  # accel_pan_by_J_pan
+    accel_tilt_by_inertia_pan = accel_pan * inverse_determinant_mass_pan_tilt
+    fp[3, 0] = accel_tilt_by_inertia_pan  # accel_tilt_by_J_pan
+    coriolis_by_inertia_pan_sin_sq_tilt = coriolis_by_inertia_pan_per_sin_tilt * sin_tilt
     accel_pan_sin_tilt = accel_pan * sin_tilt
-    accel_pan_by_J_x_tilt_term = (
-        -accel_pan_sin_tilt * inertia_pan_per_sin_tilt_by_J_x_tilt
-        - coriolis_by_J_x_tilt * omega_tilt
-    )
-    fp[2, 1] = inverse_determinant * (
-        accel_pan_by_J_x_tilt_term * inertia_tilt
-        - coriolis_by_J_x_tilt_half_omega_pan * mass_pan_tilt
-    )
-    fp[3, 1] = inverse_determinant * (
-        -accel_pan_by_J_x_tilt_term * mass_pan_tilt + coriolis_by_J_x_tilt_half_omega_pan * mass_pan
-    )
-    accel_pan_by_J_y_tilt_term = accel_tilt
-    fp[2, 2] = accel_pan_by_J_y_tilt_term * inverse_determinant_mass_pan_tilt
-    fp[3, 2] = -accel_pan_by_J_y_tilt_term * inverse_determinant_mass_pan
-    inertia_pan_per_sin_tilt_by_J_z_tilt = -sin_tilt
-    coriolis_by_J_z_tilt = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_z_tilt
-    coriolis_by_J_z_tilt_half_omega_pan = coriolis_by_J_z_tilt * half_omega_pan
-    accel_pan_by_J_z_tilt_term = (
-        -accel_pan * (inertia_pan_per_sin_tilt_by_J_z_tilt * sin_tilt + 1.0)
-        - coriolis_by_J_z_tilt * omega_tilt
-    )
-    fp[2, 3] = inverse_determinant * (
-        accel_pan_by_J_z_tilt_term * inertia_tilt
-        - coriolis_by_J_z_tilt_half_omega_pan * mass_pan_tilt
-    )
-    fp[3, 3] = inverse_determinant * (
-        -accel_pan_by_J_z_tilt_term * mass_pan_tilt + coriolis_by_J_z_tilt_half_omega_pan * mass_pan
-    )
-    inertia_pan_sin_cos_tilt_by_m_payload = 2.0 * c_x_payload * c_z_payload
-    inertia_pan_sin_sq_tilt_by_m_payload = -c_x_payload_sq + c_z_payload_sq
-    inertia_pan_per_sin_tilt_by_m_payload = (
-        cos_tilt * inertia_pan_sin_cos_tilt_by_m_payload
-        + inertia_pan_sin_sq_tilt_by_m_payload * sin_tilt
-    )
-    coriolis_by_m_payload = (
-        cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_m_payload
-        - inertia_pan_sin_cos_tilt_by_m_payload * omega_pan
-    )
+    balance_pan_by_inertia_pan_sin_sq_tilt = (-accel_pan_sin_tilt * sin_tilt
+        - coriolis_by_inertia_pan_sin_sq_tilt * omega_tilt)
+    balance_tilt_by_inertia_pan_sin_sq_tilt = (coriolis_by_inertia_pan_sin_sq_tilt
+        * force_tilt_by_coriolis)
+    accel_pan_by_inertia_pan_sin_sq_tilt = (inverse_determinant
+        * (balance_pan_by_inertia_pan_sin_sq_tilt * inertia_tilt
+        - balance_tilt_by_inertia_pan_sin_sq_tilt * mass_pan_tilt))
+    fp[2, 1] = accel_pan_by_inertia_pan_sin_sq_tilt  # accel_pan_by_J_x_tilt
+    accel_tilt_by_inertia_pan_sin_sq_tilt = (inverse_determinant
+        * (-balance_pan_by_inertia_pan_sin_sq_tilt * mass_pan_tilt
+        + balance_tilt_by_inertia_pan_sin_sq_tilt * mass_pan))
+    fp[3, 1] = accel_tilt_by_inertia_pan_sin_sq_tilt  # accel_tilt_by_J_x_tilt
+    accel_pan_by_inertia_tilt = accel_tilt * inverse_determinant_mass_pan_tilt
+    fp[2, 2] = accel_pan_by_inertia_tilt  # accel_pan_by_J_y_tilt
+    accel_tilt_by_inertia_tilt = -accel_tilt * accel_tilt_by_tau_tilt
+    fp[3, 2] = accel_tilt_by_inertia_tilt  # accel_tilt_by_J_y_tilt
+    accel_pan_by_J_z_tilt = accel_pan_by_inertia_pan - accel_pan_by_inertia_pan_sin_sq_tilt
+    fp[2, 3] = accel_pan_by_J_z_tilt
+    accel_tilt_by_J_z_tilt = accel_tilt_by_inertia_pan - accel_tilt_by_inertia_pan_sin_sq_tilt
+    fp[3, 3] = accel_tilt_by_J_z_tilt
+    balance_pan_by_coupling_cos_tilt = accel_tilt * cos_tilt - omega_tilt_sq * sin_tilt
+    balance_tilt_by_coupling_cos_tilt = accel_pan * cos_tilt
+    accel_pan_by_coupling_cos_tilt = (inverse_determinant * (balance_pan_by_coupling_cos_tilt
+        * inertia_tilt - balance_tilt_by_coupling_cos_tilt * mass_pan_tilt))
+    balance_pan_by_coupling_sin_tilt = -accel_tilt * sin_tilt - cos_tilt * omega_tilt_sq
+    accel_pan_by_coupling_sin_tilt = (inverse_determinant * (accel_pan_sin_tilt * mass_pan_tilt
+        + balance_pan_by_coupling_sin_tilt * inertia_tilt))
+    accel_pan_by_gravity_cos_tilt = -cos_tilt * inverse_determinant_mass_pan_tilt
+    accel_pan_by_gravity_sin_tilt = -inverse_determinant_mass_pan_tilt * sin_tilt
+    coriolis_by_inertia_pan_sin_cos_tilt = (coriolis_by_inertia_pan_per_sin_tilt * cos_tilt
+        - omega_pan)
+    balance_pan_by_inertia_pan_sin_cos_tilt = (-accel_pan_sin_tilt * cos_tilt
+        - coriolis_by_inertia_pan_sin_cos_tilt * omega_tilt)
+    balance_tilt_by_inertia_pan_sin_cos_tilt = (coriolis_by_inertia_pan_sin_cos_tilt
+        * force_tilt_by_coriolis)
+    accel_pan_by_inertia_pan_sin_cos_tilt = (inverse_determinant
+        * (balance_pan_by_inertia_pan_sin_cos_tilt * inertia_tilt
+        - balance_tilt_by_inertia_pan_sin_cos_tilt * mass_pan_tilt))
+    coupling_cos_tilt_by_m_payload = c_y_payload * c_z_payload
+    coupling_sin_tilt_by_m_payload = c_x_payload * c_y_payload
     gravity_cos_tilt_by_m_payload = c_x_payload * gravity
     gravity_sin_tilt_by_m_payload = c_z_payload * gravity
-    inertia_tilt_by_m_payload = c_x_payload_sq + c_z_payload_sq
-    coupling_cos_tilt_by_m_payload = c_y_payload * c_z_payload
-    accel_pan_by_m_payload_term = (
-        -cos_tilt * coupling_cos_tilt_by_m_payload + coupling_sin_tilt_by_m_payload * sin_tilt
-    )
-    accel_pan_by_m_payload_term_2 = (
-        -accel_pan * accel_pan_by_m_payload_term
-        - accel_tilt * inertia_tilt_by_m_payload
-        + coriolis_by_m_payload * half_omega_pan
-        + cos_tilt * gravity_cos_tilt_by_m_payload
-        + gravity_sin_tilt_by_m_payload * sin_tilt
-    )
     inertia_pan_by_m_payload = c_x_payload_sq + c_y_payload_sq
-    omega_tilt_sq_sin_tilt = omega_tilt_sq * sin_tilt
-    cos_tilt_omega_tilt_sq = cos_tilt * omega_tilt_sq
-    accel_pan_by_m_payload_term_3 = (
-        -accel_pan * (inertia_pan_by_m_payload + inertia_pan_per_sin_tilt_by_m_payload * sin_tilt)
-        - accel_pan_by_m_payload_term * accel_tilt
-        - coriolis_by_m_payload * omega_tilt
-        - cos_tilt_omega_tilt_sq * coupling_sin_tilt_by_m_payload
-        - coupling_cos_tilt_by_m_payload * omega_tilt_sq_sin_tilt
-    )
-    fp[2, 4] = inverse_determinant * (
-        -accel_pan_by_m_payload_term_2 * mass_pan_tilt
-        + accel_pan_by_m_payload_term_3 * inertia_tilt
-    )
-    fp[3, 4] = inverse_determinant * (
-        accel_pan_by_m_payload_term_2 * mass_pan - accel_pan_by_m_payload_term_3 * mass_pan_tilt
-    )
-    inertia_pan_per_sin_tilt_by_J_x_payload = sin_tilt
-    coriolis_by_J_x_payload = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_x_payload
-    coriolis_by_J_x_payload_half_omega_pan = coriolis_by_J_x_payload * half_omega_pan
-    accel_pan_by_J_x_payload_term = (
-        -accel_pan_sin_tilt * inertia_pan_per_sin_tilt_by_J_x_payload
-        - coriolis_by_J_x_payload * omega_tilt
-    )
-    fp[2, 5] = inverse_determinant * (
-        accel_pan_by_J_x_payload_term * inertia_tilt
-        - coriolis_by_J_x_payload_half_omega_pan * mass_pan_tilt
-    )
-    fp[3, 5] = inverse_determinant * (
-        -accel_pan_by_J_x_payload_term * mass_pan_tilt
-        + coriolis_by_J_x_payload_half_omega_pan * mass_pan
-    )
-    accel_pan_by_J_y_payload_term = accel_tilt
-    fp[2, 6] = accel_pan_by_J_y_payload_term * inverse_determinant_mass_pan_tilt
-    fp[3, 6] = -accel_pan_by_J_y_payload_term * inverse_determinant_mass_pan
-    inertia_pan_per_sin_tilt_by_J_z_payload = -sin_tilt
-    coriolis_by_J_z_payload = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_z_payload
-    coriolis_by_J_z_payload_half_omega_pan = coriolis_by_J_z_payload * half_omega_pan
-    accel_pan_by_J_z_payload_term = (
-        -accel_pan * (inertia_pan_per_sin_tilt_by_J_z_payload * sin_tilt + 1.0)
-        - coriolis_by_J_z_payload * omega_tilt
-    )
-    fp[2, 7] = inverse_determinant * (
-        accel_pan_by_J_z_payload_term * inertia_tilt
-        - coriolis_by_J_z_payload_half_omega_pan * mass_pan_tilt
-    )
-    fp[3, 7] = inverse_determinant * (
-        -accel_pan_by_J_z_payload_term * mass_pan_tilt
-        + coriolis_by_J_z_payload_half_omega_pan * mass_pan
-    )
-    inertia_pan_sin_sq_tilt_by_c_x_payload = -inertia_tilt_by_c_x_payload
-    inertia_tilt_by_c_z_payload = 2.0 * gravity_sin_tilt_by_gravity
-    inertia_pan_per_sin_tilt_by_c_x_payload = (
-        cos_tilt * inertia_tilt_by_c_z_payload + inertia_pan_sin_sq_tilt_by_c_x_payload * sin_tilt
-    )
-    coriolis_by_c_x_payload = (
-        cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_c_x_payload
-        - inertia_tilt_by_c_z_payload * omega_pan
-    )
-    gravity_cos_tilt_by_c_x_payload = gravity * m_payload
-    accel_pan_by_c_x_payload_term = (
-        -accel_pan_sin_tilt * coupling_cos_tilt_by_c_z_payload
-        - accel_tilt * inertia_tilt_by_c_x_payload
-        + 0.5 * coriolis_by_c_x_payload * omega_pan
-        + cos_tilt * gravity_cos_tilt_by_c_x_payload
-    )
-    accel_pan_by_c_x_payload_term_2 = (
-        -accel_pan
-        * (inertia_pan_per_sin_tilt_by_c_x_payload * sin_tilt + inertia_tilt_by_c_x_payload)
-        - accel_tilt * coupling_cos_tilt_by_c_z_payload * sin_tilt
-        - coriolis_by_c_x_payload * omega_tilt
-        - cos_tilt_omega_tilt_sq * coupling_cos_tilt_by_c_z_payload
-    )
-    fp[2, 8] = inverse_determinant * (
-        -accel_pan_by_c_x_payload_term * mass_pan_tilt
-        + accel_pan_by_c_x_payload_term_2 * inertia_tilt
-    )
-    fp[3, 8] = inverse_determinant * (
-        accel_pan_by_c_x_payload_term * mass_pan - accel_pan_by_c_x_payload_term_2 * mass_pan_tilt
-    )
-    accel_pan_by_c_y_payload_term = (
-        -cos_tilt * gravity_sin_tilt_by_gravity + gravity_cos_tilt_by_gravity * sin_tilt
-    )
-    accel_pan_accel_pan_by_c_y_payload_term = accel_pan * accel_pan_by_c_y_payload_term
-    inertia_pan_by_c_y_payload = 2.0 * coupling_cos_tilt_by_c_z_payload
-    accel_pan_by_c_y_payload_term_2 = (
-        -accel_pan * inertia_pan_by_c_y_payload
-        - accel_pan_by_c_y_payload_term * accel_tilt
-        - cos_tilt_omega_tilt_sq * gravity_cos_tilt_by_gravity
-        - gravity_sin_tilt_by_gravity * omega_tilt_sq_sin_tilt
-    )
-    fp[2, 9] = inverse_determinant * (
-        accel_pan_accel_pan_by_c_y_payload_term * mass_pan_tilt
-        + accel_pan_by_c_y_payload_term_2 * inertia_tilt
-    )
-    fp[3, 9] = inverse_determinant * (
-        -accel_pan_accel_pan_by_c_y_payload_term * mass_pan
-        - accel_pan_by_c_y_payload_term_2 * mass_pan_tilt
-    )
-    inertia_pan_per_sin_tilt_by_c_z_payload = (
-        cos_tilt * inertia_tilt_by_c_x_payload + inertia_tilt_by_c_z_payload * sin_tilt
-    )
-    coriolis_by_c_z_payload = (
-        cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_c_z_payload
-        - inertia_tilt_by_c_x_payload * omega_pan
-    )
-    accel_pan_by_c_z_payload_term = (
-        accel_pan * cos_tilt * coupling_cos_tilt_by_c_z_payload
-        - accel_tilt * inertia_tilt_by_c_z_payload
-        + coriolis_by_c_z_payload * half_omega_pan
-        + gravity_cos_tilt_by_c_x_payload * sin_tilt
-    )
-    accel_pan_by_c_z_payload_term_2 = (
-        -accel_pan_sin_tilt * inertia_pan_per_sin_tilt_by_c_z_payload
-        + accel_tilt * cos_tilt * coupling_cos_tilt_by_c_z_payload
-        - coriolis_by_c_z_payload * omega_tilt
-        - coupling_cos_tilt_by_c_z_payload * omega_tilt_sq_sin_tilt
-    )
-    fp[2, 10] = inverse_determinant * (
-        -accel_pan_by_c_z_payload_term * mass_pan_tilt
-        + accel_pan_by_c_z_payload_term_2 * inertia_tilt
-    )
-    fp[3, 10] = inverse_determinant * (
-        accel_pan_by_c_z_payload_term * mass_pan - accel_pan_by_c_z_payload_term_2 * mass_pan_tilt
-    )
-    fp[2, 11] = -inertia_tilt_inverse_determinant * omega_pan
-    fp[3, 11] = inverse_determinant_mass_pan_tilt * omega_pan
-    fp[2, 12] = inverse_determinant_mass_pan_tilt * omega_tilt
-    fp[3, 12] = -inverse_determinant_mass_pan * omega_tilt
-    accel_pan_by_gravity_term = (
-        cos_tilt * gravity_cos_tilt_by_gravity + gravity_sin_tilt_by_gravity * sin_tilt
-    )
-    fp[2, 13] = -accel_pan_by_gravity_term * inverse_determinant_mass_pan_tilt
-    fp[3, 13] = accel_pan_by_gravity_term * inverse_determinant_mass_pan
+    inertia_pan_sin_cos_tilt_by_m_payload = 2.0 * c_x_payload * c_z_payload
+    inertia_pan_sin_sq_tilt_by_m_payload = -c_x_payload_sq + c_z_payload_sq
+    inertia_tilt_by_m_payload = c_x_payload_sq + c_z_payload_sq
+    fp[2, 4] = (accel_pan_by_coupling_cos_tilt * coupling_cos_tilt_by_m_payload
+        + accel_pan_by_coupling_sin_tilt * coupling_sin_tilt_by_m_payload
+        + accel_pan_by_gravity_cos_tilt * gravity_cos_tilt_by_m_payload
+        + accel_pan_by_gravity_sin_tilt * gravity_sin_tilt_by_m_payload
+        + accel_pan_by_inertia_pan * inertia_pan_by_m_payload
+        + accel_pan_by_inertia_pan_sin_cos_tilt * inertia_pan_sin_cos_tilt_by_m_payload
+        + accel_pan_by_inertia_pan_sin_sq_tilt * inertia_pan_sin_sq_tilt_by_m_payload
+        + accel_pan_by_inertia_tilt * inertia_tilt_by_m_payload)  # accel_pan_by_m_payload
+    accel_tilt_by_coupling_cos_tilt = (inverse_determinant * (-balance_pan_by_coupling_cos_tilt
+        * mass_pan_tilt + balance_tilt_by_coupling_cos_tilt * mass_pan))
+    accel_tilt_by_coupling_sin_tilt = (inverse_determinant * (-accel_pan_sin_tilt * mass_pan
+        - balance_pan_by_coupling_sin_tilt * mass_pan_tilt))
+    accel_tilt_by_gravity_cos_tilt = accel_tilt_by_tau_tilt * cos_tilt
+    accel_tilt_by_gravity_sin_tilt = accel_tilt_by_tau_tilt * sin_tilt
+    accel_tilt_by_inertia_pan_sin_cos_tilt = (inverse_determinant
+        * (-balance_pan_by_inertia_pan_sin_cos_tilt * mass_pan_tilt
+        + balance_tilt_by_inertia_pan_sin_cos_tilt * mass_pan))
+    fp[3, 4] = (accel_tilt_by_coupling_cos_tilt * coupling_cos_tilt_by_m_payload
+        + accel_tilt_by_coupling_sin_tilt * coupling_sin_tilt_by_m_payload
+        + accel_tilt_by_gravity_cos_tilt * gravity_cos_tilt_by_m_payload
+        + accel_tilt_by_gravity_sin_tilt * gravity_sin_tilt_by_m_payload
+        + accel_tilt_by_inertia_pan * inertia_pan_by_m_payload
+        + accel_tilt_by_inertia_pan_sin_cos_tilt * inertia_pan_sin_cos_tilt_by_m_payload
+        + accel_tilt_by_inertia_pan_sin_sq_tilt * inertia_pan_sin_sq_tilt_by_m_payload
+        + accel_tilt_by_inertia_tilt * inertia_tilt_by_m_payload)  # accel_tilt_by_m_payload
+    fp[2, 5] = accel_pan_by_inertia_pan_sin_sq_tilt  # accel_pan_by_J_x_payload
+    fp[3, 5] = accel_tilt_by_inertia_pan_sin_sq_tilt  # accel_tilt_by_J_x_payload
+    fp[2, 6] = accel_pan_by_inertia_tilt  # accel_pan_by_J_y_payload
+    fp[3, 6] = accel_tilt_by_inertia_tilt  # accel_tilt_by_J_y_payload
+    fp[2, 7] = accel_pan_by_J_z_tilt  # accel_pan_by_J_z_payload
+    fp[3, 7] = accel_tilt_by_J_z_tilt  # accel_tilt_by_J_z_payload
+    gravity_cos_tilt_by_gravity = c_x_payload * m_payload
+    inertia_pan_by_c_x_payload = 2.0 * gravity_cos_tilt_by_gravity
+    fp[2, 8] = (accel_pan_by_coupling_sin_tilt * coupling_sin_tilt_by_c_x_payload
+        + accel_pan_by_gravity_cos_tilt * gravity_cos_tilt_by_c_x_payload
+        + accel_pan_by_inertia_pan * inertia_pan_by_c_x_payload
+        + accel_pan_by_inertia_pan_sin_cos_tilt * inertia_tilt_by_c_z_payload
+        - accel_pan_by_inertia_pan_sin_sq_tilt * inertia_pan_by_c_x_payload
+        + accel_pan_by_inertia_tilt * inertia_pan_by_c_x_payload)  # accel_pan_by_c_x_payload
+    fp[3, 8] = (accel_tilt_by_coupling_sin_tilt * coupling_sin_tilt_by_c_x_payload
+        + accel_tilt_by_gravity_cos_tilt * gravity_cos_tilt_by_c_x_payload
+        + accel_tilt_by_inertia_pan * inertia_pan_by_c_x_payload
+        + accel_tilt_by_inertia_pan_sin_cos_tilt * inertia_tilt_by_c_z_payload
+        - accel_tilt_by_inertia_pan_sin_sq_tilt * inertia_pan_by_c_x_payload
+        + accel_tilt_by_inertia_tilt * inertia_pan_by_c_x_payload)  # accel_tilt_by_c_x_payload
+    inertia_pan_by_c_y_payload = 2.0 * coupling_sin_tilt_by_c_x_payload
+    fp[2, 9] = (accel_pan_by_coupling_cos_tilt * gravity_sin_tilt_by_gravity
+        + accel_pan_by_coupling_sin_tilt * gravity_cos_tilt_by_gravity
+        + accel_pan_by_inertia_pan * inertia_pan_by_c_y_payload)  # accel_pan_by_c_y_payload
+    fp[3, 9] = (accel_tilt_by_coupling_cos_tilt * gravity_sin_tilt_by_gravity
+        + accel_tilt_by_coupling_sin_tilt * gravity_cos_tilt_by_gravity
+        + accel_tilt_by_inertia_pan * inertia_pan_by_c_y_payload)  # accel_tilt_by_c_y_payload
+    fp[2, 10] = (accel_pan_by_coupling_cos_tilt * coupling_sin_tilt_by_c_x_payload
+        + accel_pan_by_gravity_sin_tilt * gravity_cos_tilt_by_c_x_payload
+        + accel_pan_by_inertia_pan_sin_cos_tilt * inertia_pan_by_c_x_payload
+        + accel_pan_by_inertia_pan_sin_sq_tilt * inertia_tilt_by_c_z_payload
+        + accel_pan_by_inertia_tilt * inertia_tilt_by_c_z_payload)  # accel_pan_by_c_z_payload
+    fp[3, 10] = (accel_tilt_by_coupling_cos_tilt * coupling_sin_tilt_by_c_x_payload
+        + accel_tilt_by_gravity_sin_tilt * gravity_cos_tilt_by_c_x_payload
+        + accel_tilt_by_inertia_pan_sin_cos_tilt * inertia_pan_by_c_x_payload
+        + accel_tilt_by_inertia_pan_sin_sq_tilt * inertia_tilt_by_c_z_payload
+        + accel_tilt_by_inertia_tilt * inertia_tilt_by_c_z_payload)  # accel_tilt_by_c_z_payload
+    fp[2, 11] = -accel_pan_by_tau_pan * omega_pan  # accel_pan_by_b_pan
+    fp[3, 11] = inverse_determinant_mass_pan_tilt * omega_pan  # accel_tilt_by_b_pan
+    fp[2, 12] = inverse_determinant_mass_pan_tilt * omega_tilt  # accel_pan_by_b_tilt
+    fp[3, 12] = -accel_tilt_by_tau_tilt * omega_tilt  # accel_tilt_by_b_tilt
+    fp[2, 13] = (accel_pan_by_gravity_cos_tilt * gravity_cos_tilt_by_gravity
+        + accel_pan_by_gravity_sin_tilt * gravity_sin_tilt_by_gravity)  # accel_pan_by_gravity
+    fp[3, 13] = (accel_tilt_by_gravity_cos_tilt * gravity_cos_tilt_by_gravity
+        + accel_tilt_by_gravity_sin_tilt * gravity_sin_tilt_by_gravity)  # accel_tilt_by_gravity
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def guards(t, x, u, p, m, g):
-    """Write holding and breakaway torques, gap separations and contact torques into g.
-
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
-    see MODE_NAMES; g [0] in N m and rad.
-    """
-    return
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def guard_jacobian(t, x, u, p, m, gx, gp):
-    """Write the non-zero derivatives of guards by state and parameter.
-
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
-    see MODE_NAMES; gx [0, 4]; gp [0, 14].
-    """
-    return
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def outputs(t, x, u, p, y):
     """Write the measured signals into y.
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; y [2] in
-    OUTPUT_UNITS.
+      OUTPUT_UNITS.
+    y: reading_theta_pan, reading_theta_tilt.
     """
-    theta_pan = x[0]
-    theta_tilt = x[1]
-    y[0] = theta_pan
-    y[1] = theta_tilt
+    theta_pan, theta_tilt = x[0], x[1]
+    y[0] = theta_pan  # reading_theta_pan
+    y[1] = theta_tilt  # reading_theta_tilt
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def output_jacobian(t, x, u, p, yx, yp):
     """Write the non-zero derivatives of outputs by state and parameter.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; yx [2,
-    4]; yp [2, 14].
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; yx
+      [2, 4]; yp [2, 14].
     """
-    yx[0, 0] = 1.0
-    yx[1, 1] = 1.0
+    yx[0, 0] = 1.0  # reading_theta_pan_by_theta_pan
+    yx[1, 1] = 1.0  # reading_theta_tilt_by_theta_tilt
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def energy(t, x, u, p, m, e):
-    """Write stored energy in J, power in and dissipated power in W into e.
-
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
-    see MODE_NAMES; e [3] in J, W and W.
-    """
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    tau_pan = u[0]
-    tau_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    b_pan = p[11]
-    b_tilt = p[12]
-    gravity = p[13]
-    omega_pan_sq = omega_pan * omega_pan
-    half_omega_pan_sq = 0.5 * omega_pan_sq
-    omega_tilt_sq = omega_tilt * omega_tilt
-    half_omega_tilt_sq = 0.5 * omega_tilt_sq
-    gravity_m_payload = gravity * m_payload
-    cos_tilt = math.cos(theta_tilt)
-    c_z_payload_cos_tilt = c_z_payload * cos_tilt
-    sin_tilt = math.sin(theta_tilt)
-    c_x_payload_sin_tilt = c_x_payload * sin_tilt
-    c_x_payload_sin_tilt_m_payload = c_x_payload_sin_tilt * m_payload
-    c_y_payload_omega_pan_omega_tilt = c_y_payload * omega_pan * omega_tilt
-    c_x_payload_sq = c_x_payload * c_x_payload
-    half_omega_tilt_sq_m_payload = half_omega_tilt_sq * m_payload
-    c_z_payload_sq = c_z_payload * c_z_payload
-    stored_term = half_omega_pan_sq * (sin_tilt * sin_tilt)
-    stored_term_2 = (cos_tilt * cos_tilt) * half_omega_pan_sq
-    m_payload_stored_term_2 = m_payload * stored_term_2
-    c_y_payload_sq = c_y_payload * c_y_payload
-    m_payload_stored_term = m_payload * stored_term
-    e[0] = (
-        J_pan * half_omega_pan_sq
-        + J_x_payload * stored_term
-        + J_x_tilt * stored_term
-        + J_y_payload * half_omega_tilt_sq
-        + J_y_tilt * half_omega_tilt_sq
-        + J_z_payload * stored_term_2
-        + J_z_tilt * stored_term_2
-        - c_x_payload_sin_tilt * gravity_m_payload
-        + c_x_payload_sin_tilt_m_payload * c_y_payload_omega_pan_omega_tilt
-        + c_x_payload_sin_tilt_m_payload * c_z_payload_cos_tilt * omega_pan_sq
-        + c_x_payload_sq * half_omega_tilt_sq_m_payload
-        + c_x_payload_sq * m_payload_stored_term_2
-        - c_y_payload_omega_pan_omega_tilt * c_z_payload_cos_tilt * m_payload
-        + c_y_payload_sq * m_payload_stored_term
-        + c_y_payload_sq * m_payload_stored_term_2
-        + c_z_payload_cos_tilt * gravity_m_payload
-        + c_z_payload_sq * half_omega_tilt_sq_m_payload
-        + c_z_payload_sq * m_payload_stored_term
-    )
-    e[1] = omega_pan * tau_pan + omega_tilt * tau_tilt
-    e[2] = b_pan * omega_pan_sq + b_tilt * omega_tilt_sq
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def equation_error(t, x, u, p, m, r):
-    """Write the torque that every row lacks, then rates of other states into r; x ends in accel.
-
-    t in s; x [6] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
-    see MODE_NAMES; r [2] in N m, then STATE_UNITS per s.
-    """
-    theta_tilt = x[1]
-    omega_pan = x[2]
-    omega_tilt = x[3]
-    accel_pan = x[4]
-    accel_tilt = x[5]
-    tau_pan = u[0]
-    tau_tilt = u[1]
-    J_pan = p[0]
-    J_x_tilt = p[1]
-    J_y_tilt = p[2]
-    J_z_tilt = p[3]
-    m_payload = p[4]
-    J_x_payload = p[5]
-    J_y_payload = p[6]
-    J_z_payload = p[7]
-    c_x_payload = p[8]
-    c_y_payload = p[9]
-    c_z_payload = p[10]
-    b_pan = p[11]
-    b_tilt = p[12]
-    gravity = p[13]
-    inertia_pan_sin_cos_tilt = 2.0 * c_x_payload * c_z_payload * m_payload
-    inertia_pan_sin_sq_tilt_term = (c_x_payload * c_x_payload) * m_payload
-    inertia_pan_sin_sq_tilt_term_2 = (c_z_payload * c_z_payload) * m_payload
-    inertia_pan_sin_sq_tilt = (
-        J_x_payload
-        + J_x_tilt
-        - J_z_payload
-        - J_z_tilt
-        - inertia_pan_sin_sq_tilt_term
-        + inertia_pan_sin_sq_tilt_term_2
-    )
-    cos_tilt = math.cos(theta_tilt)
-    sin_tilt = math.sin(theta_tilt)
-    inertia_pan_per_sin_tilt = (
-        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
-    )
-    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
-    c_y_payload_m_payload = c_y_payload * m_payload
-    coupling_cos_tilt = c_y_payload_m_payload * c_z_payload
-    coupling_sin_tilt = c_x_payload * c_y_payload_m_payload
-    force_pan = (
-        -b_pan * omega_pan
-        - omega_tilt
-        * (coriolis + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt))
-        + tau_pan
-    )
-    inertia_pan = (
-        J_pan
-        + J_z_payload
-        + J_z_tilt
-        + (c_y_payload * c_y_payload) * m_payload
-        + inertia_pan_sin_sq_tilt_term
-    )
-    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
-    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
-    r[0] = accel_pan * mass_pan + accel_tilt * mass_pan_tilt - force_pan
-    gravity_m_payload = gravity * m_payload
-    gravity_cos_tilt = c_x_payload * gravity_m_payload
-    gravity_sin_tilt = c_z_payload * gravity_m_payload
-    force_tilt = (
-        -b_tilt * omega_tilt
-        + 0.5 * coriolis * omega_pan
-        + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt
-        + tau_tilt
-    )
-    inertia_tilt = (
-        J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term + inertia_pan_sin_sq_tilt_term_2
-    )
-    r[1] = accel_pan * mass_pan_tilt + accel_tilt * inertia_tilt - force_tilt
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def domain(p, bounds):
     """Write lower and upper bound of the state of every row of DOMAIN into bounds.
 
@@ -865,7 +486,7 @@ def domain(p, bounds):
     return
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def margins(p, margin):
     """Write by how much the parameters meet every row of REQUIREMENTS into margin.
 
@@ -874,16 +495,43 @@ def margins(p, margin):
     return
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def initial_modes(t, x, u, p, m):
     """Leave m alone: this model has no modes."""
     return
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def state_derivative(t, x, u, p, dx):
     """Write the time derivative of the state into dx."""
-    mode_derivative(t, x, u, p, x, dx)
+    mode_derivative(t, x, u, p, (), dx)
 
 
-# END sha256 3266838ee1bd4e25f7df0d5f75d3b422f54ed73337632cf05721b0232a158a87
+# What the field calls some of these functions.
+vector_field, events, inverse_dynamics = mode_derivative, guards, equation_error
+
+
+# What follows is for fits and diagnoses; no function above uses it.
+# States without influence while these parameters are at their vanishing values.
+IDLE_STATES = ()
+# Relations: parameters, rule, strict; `margins` gives what is at least zero.
+REQUIREMENTS = ()
+# Searching them: name, value at which the effect vanishes (None: any), starts,
+# period, what a frequency is locked to.
+SEARCH = (("b_pan", 0.0, (0.1,), None, None), ("b_tilt", 0.0, (0.1,), None, None))
+# Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of the
+# effects that it acts on, title, reference, separating experiment, first member leads.
+EFFECTS = (
+    ("rigid_bodies", None, ("J_pan", "J_x_tilt", "J_y_tilt", "J_z_tilt"), (), (),
+     "pan body and tilt body", "thesis Eq. 3.8, Table 5.1", "", False),
+    ("payload", None, ("m_payload", "J_x_payload", "J_y_payload", "J_z_payload", "c_x_payload",
+     "c_y_payload", "c_z_payload"), (), (), "payload",
+     "thesis section 3.2.2, Table 5.3 with erratum 18", "", False),
+    ("viscous_friction", "pan", ("b_pan",), (), (), "viscous friction in the joint",
+     "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
+     "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
+    ("viscous_friction", "tilt", ("b_tilt",), (), (), "viscous friction in the joint",
+     "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
+     "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
+)
+# END sha256 fb5cccacd041904f11cbd5fdf82485c8bbe77da251d03b06536aa078fe5ead24

@@ -1,18 +1,18 @@
-"""The emitted right-hand side as C, and the time gcc's code for it takes."""
+"""The right-hand side as C, and the time gcc's code for it takes."""
 
-import ast
 import ctypes
-import inspect
 import shutil
 import subprocess
 import tempfile
-import textwrap
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.program.program import program
+from ptp_symbolic.symbolic.targets.c99.language import DOUBLE
 
 FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-shared", "-fPIC")
 LOOPS = """
@@ -40,19 +40,14 @@ double independent(long count, long states, const double *x, const double *u, co
 
 
 def c_text(model: Model) -> str:
-    """C of the emitted `mode_derivative`, line by line, with the two loops that time it."""
-    source = textwrap.dedent(inspect.getsource(model.module.mode_derivative.py_func))
-    function = ast.parse(source[source.index("def ") :]).body[0]
-    assert isinstance(function, ast.FunctionDef)
-    lines = []
-    for statement in function.body:
-        if not isinstance(statement, ast.Assign):
-            continue
-        target, value = ast.unparse(statement.targets[0]), ast.unparse(statement.value)
-        if "**" in value:
-            raise ValueError(f"no C for {value}")
+    """C of the vector field of `model`, with the two loops that time it."""
+    assert model.platform is not None
+    kernel = program(assemble(model.platform)).kernel("mode_derivative")
+    assert kernel is not None
+    lines = [f"    const double {name} = {a}[{k}];" for name, a, k in kernel.unpacked]
+    for target, expression in kernel.lines:
         kind = "" if target.startswith("dx[") else "const double "
-        lines.append(f"    {kind}{target} = {value.replace('math.', '')};")
+        lines.append(f"    {kind}{target} = {DOUBLE.expression(expression)};")
     return LOOPS % {"body": "\n".join(lines), "n": len(model.state_names)}
 
 

@@ -40,7 +40,6 @@ class EventMachine:
             0,
             0,
             0,
-            0,
             self.p,
             none,
             model.friction_rates,
@@ -53,9 +52,6 @@ class EventMachine:
         elements = frictions + (len(self.m) - frictions) // 2
         self.g = np.zeros(3 * frictions + 4 * (elements - frictions))
         self.dx, self.cursor = np.zeros(len(model.state_names)), table.new_cursor()
-        self.fx = np.zeros((len(self.dx), len(self.dx)))
-        self.fu = np.zeros((len(self.dx), len(self.u)))
-        self.fp = np.zeros((len(self.dx), len(self.p)))
         self.events = [self._event(element) for element in range(elements)]
 
     def rhs(self, t: float, x: FloatArray) -> FloatArray:
@@ -67,8 +63,7 @@ class EventMachine:
     def jacobian(self, t: float, x: FloatArray) -> FloatArray:
         """Return the emitted Jacobian in the present modes."""
         evaluate_inputs(t, 1, *self.table.arrays, self.cursor, self.u)
-        self.model.module.jacobian(t, x, self.u, self.p, self.m, self.fx, self.fu, self.fp)
-        return self.fx.copy()
+        return self.model.derivatives(t, x, self.u, self.p, self.m).fx
 
     def settle(self, t: float, x: FloatArray) -> None:
         """Choose the modes from (t, x) on; zeroes rates that have reversed."""

@@ -236,9 +236,7 @@ class Machine(Displayed, Model):
     def _jacobian(
         self, t: float, x: FloatArray, u: FloatArray, p: FloatArray, modes: FloatArray
     ) -> Jacobian:
-        found = Jacobian(*(np.zeros((len(x), k)) for k in (len(x), len(u), len(p))))
-        self.module.jacobian(t, x, u, p, modes, *found)
-        return found
+        return Jacobian(*self.derivatives(t, x, u, p, modes)[:3])
 
     def _output_jacobian(
         self, t: float, x: FloatArray, u: FloatArray, p: FloatArray

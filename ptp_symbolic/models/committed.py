@@ -1,9 +1,7 @@
 """Emit the committed models into `generated/`, or check that they are what would be emitted."""
 
 import importlib.metadata
-import subprocess
 import sys
-import sysconfig
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,9 +12,7 @@ from ptp_symbolic.models.emission import module_of
 from ptp_symbolic.numeric.runtime.loader import COMMITTED, generated_folder
 from ptp_symbolic.platform import Platform, platform_file, read_platform
 from ptp_symbolic.symbolic.derivation.placement import refuse_undeclared
-from ptp_symbolic.symbolic.targets.numba.module import sealed
 
-LINE_LENGTH = 100
 # Packages that emitted modules and those who call them import, installed here or not.
 IMPORTED = (
     "casadi fmpy generated h5py jax mujoco numba numpy pandas pip pytest ruff scipy setuptools"
@@ -67,10 +63,7 @@ def regenerate(models: Sequence[str] = (), check: bool = False) -> Outcome:
                 f"'{model}' is a platform, not one of the committed models"
                 f" {', '.join(COMMITTED)}; add --out FOLDER to emit its module there."
             )
-    texts = {
-        model: sealed(formatted(module_of(read_platform(COMMITTED[model]))))
-        for model in models or COMMITTED
-    }
+    texts = {model: module_of(read_platform(COMMITTED[model])) for model in models or COMMITTED}
     return _write(texts, generated_folder(), check)
 
 
@@ -122,28 +115,6 @@ def _write(texts: Mapping[str, str], folder: Path, check: bool) -> Outcome:
         if not same and not check:
             write_text_if_changed(path, text)
     return Outcome(tuple(changed), tuple(unchanged))
-
-
-def formatted(text: str) -> str:
-    """`text` as ruff formats it, whatever the configuration of the machine.
-
-    Raises InputError where ruff is not installed beside this Python: nothing is looked for in the
-    folder one stands in.
-    """
-    program = Path(sysconfig.get_path("scripts")) / f"ruff{sysconfig.get_config_var('EXE') or ''}"
-    command = [str(program), "format", "--isolated", "--stdin-filename", "model.py"]
-    command += ["--config", f"line-length={LINE_LENGTH}", "-"]
-    try:
-        done = subprocess.run(command, input=text, capture_output=True, text=True, check=False)
-    except OSError:
-        raise InputError(
-            "The committed models are formatted by ruff, which is not installed: run"
-            " 'pip install ptp-symbolic[dev]', or add --out FOLDER to emit modules without it."
-        ) from None
-    if done.returncode != 0:
-        reason = done.stderr.strip().splitlines()
-        raise InputError(f"ruff could not format a module: {reason[-1] if reason else 'no word'}.")
-    return done.stdout
 
 
 def stray_modules(folder: Path) -> tuple[str, ...]:

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ptp_symbolic.models import committed
 from ptp_symbolic.numeric.runtime.loader import load_module
 from ptp_symbolic.platform import platform_text, read_platform
 
@@ -132,12 +131,3 @@ def test_nothing_runs_from_the_folder_one_stands_in(tmp_path: Path) -> None:
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert (done.returncode, done.stdout) == (0, "1 modules are up to date.\n"), done.stderr
     assert not (tmp_path / "trap").exists()
-
-
-def test_without_a_formatter_the_committed_models_say_what_to_install(
-    call, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    monkeypatch.setattr(committed.sysconfig, "get_path", lambda _: str(tmp_path))
-    done = call("regenerate", "ideal", "--check")
-    assert done.code == 2
-    assert "pip install ptp-symbolic[dev]" in done.err

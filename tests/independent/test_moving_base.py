@@ -187,9 +187,8 @@ def test_derivatives_of_rates_and_readings_are_those_of_differences(name: str) -
     for _ in range(3):
         x, u = rng.normal(size=n), rng.normal(size=nu)
         yx, yp = np.zeros((ny, n)), np.zeros((ny, len(p)))
-        fx, fu, fp = np.zeros((n, n)), np.zeros((n, nu)), np.zeros((n, len(p)))
         model.module.output_jacobian(0.0, x, u, p, yx, yp)
-        model.module.jacobian(0.0, x, u, p, np.zeros(0), fx, fu, fp)
+        fx, fu, fp, *_ = model.derivatives(0.0, x, u, p, np.zeros(0))
 
         def at(x: np.ndarray, u: np.ndarray, p: np.ndarray) -> np.ndarray:
             y = np.zeros(ny)

@@ -2,6 +2,7 @@
 
 import ast
 import os
+import re
 import subprocess
 import sys
 
@@ -70,8 +71,32 @@ def test_what_depends_on_parameters_alone_is_computed_once() -> None:
         for node in ast.parse(text).body
         if isinstance(node, ast.FunctionDef)
     }
-    assert bodies["prepare"] + bodies["prepared_derivative"] == bodies["mode_derivative"]
-    assert bodies["prepare"] > 20
+    assert bodies["mode_derivative"] == 0
+    assert bodies["constants"] > 20
+
+
+LONGEST = 2000  # lines of a module that a person is to read
+FEWEST_NAMED = 0.8  # of the terms that say what they are, and not where they are used
+
+
+def test_the_largest_module_reads_like_one_that_a_person_wrote() -> None:
+    """No name for a name or its negative; most names say what a term is."""
+    lines = (generated_folder() / "full.py").read_text().splitlines()
+    assert len(lines) <= LONGEST and max(map(len, lines)) <= 100
+    assigned = [found for line in lines if (found := re.match(r"    ([A-Za-z_]\w*) = (.*)", line))]
+    assert [found[0] for found in assigned if re.fullmatch(r"-?[A-Za-z_]\w*", found[2])] == []
+    names = {found[1] for found in assigned}
+    described = [name for name in names if not re.search(r"_term(_\d+)?(_|$)", name)]
+    assert len(described) >= FEWEST_NAMED * len(names)
+
+
+def test_no_kernel_allocates() -> None:
+    """Numba refuses to compile a function without its memory manager that allocates."""
+    for name in COMMITTED:
+        text = (generated_folder() / f"{name}.py").read_text()
+        heads = re.findall(r"@njit\((.*)\)\ndef (\w+)", text)
+        allocating = {function for options, function in heads if "_nrt=False" not in options}
+        assert allocating <= {"initial_modes", "state_derivative"}, name
 
 
 def test_gravity_may_be_set_like_any_parameter() -> None:
@@ -120,27 +145,46 @@ def test_a_motion_that_obeys_the_equations_lacks_no_torque(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", list(COMMITTED))
-def test_jacobian_against_central_differences(name: str) -> None:
+def test_derivatives_against_central_differences(name: str) -> None:
     model, rng = ptp_symbolic.load(name), np.random.default_rng(3)
     n, nu, m = len(model.state_names), len(model.input_names), np.zeros(len(model.mode_names))
     m[:] = 1.0
     p, x, u = model.parameter_vector(), 0.3 * rng.normal(size=n), rng.normal(size=nu)
-    fx, fu, fp = np.zeros((n, n)), np.zeros((n, nu)), np.zeros((n, len(p)))
-    model.module.jacobian(0.0, x, u, p, m, fx, fu, fp)
-    for array, matrix in ((x, fx), (u, fu), (p, fp)):
+    found = model.derivatives(0.0, x, u, p, m)
+    guards = len(found.gx)
+    by_x, by_p = np.vstack([found.fx, found.gx]), np.vstack([found.fp, found.gp])
+    by_u = np.vstack([found.fu, np.full((guards, nu), np.nan)])
+    for array, matrix in ((x, by_x), (u, by_u), (p, by_p)):
         for j in range(len(array)):
             step = 1e-6 * max(abs(array[j]), 1e-3)
             sides = []
             for sign in (1.0, -1.0):
-                kept, dx = array[j], np.zeros(n)
+                kept, dx, g = array[j], np.zeros(n), np.zeros(guards)
                 array[j] = kept + sign * step
                 model.module.mode_derivative(0.0, x, u, p, m, dx)
+                model.module.guards(0.0, x, u, p, m, g)
                 array[j] = kept
-                sides.append(dx)
+                sides.append(dx if array is u else np.concatenate([dx, g]))
             difference = (sides[0] - sides[1]) / (2.0 * step)
             scale = np.abs(difference).max() + 1e-6
             rounding = np.finfo(float).eps * np.abs(sides).max() / step
-            assert np.abs(difference - matrix[:, j]).max() <= 2e-5 * scale + 2.0 * rounding
+            own = matrix[: len(difference), j]
+            assert np.abs(difference - own).max() <= 2e-5 * scale + 2.0 * rounding
+
+
+@pytest.mark.parametrize("name", ["full", "payload"])
+def test_derivatives_that_are_not_asked_for_are_neither_written_nor_needed(name: str) -> None:
+    """A step of the implicit method asks for those by the state and the inputs alone."""
+    model, rng = ptp_symbolic.load(name), np.random.default_rng(5)
+    n, m = len(model.state_names), np.ones(len(model.mode_names))
+    x, u = 0.3 * rng.normal(size=n), rng.normal(size=len(model.input_names))
+    p = model.parameter_vector()
+    whole = model.derivatives(0.0, x, u, p, m)
+    for asked in (2, 3):
+        arrays = [np.zeros_like(a) if k < asked else a[:0].copy() for k, a in enumerate(whole)]
+        model.module.linearize(0.0, x, u, p, m, *arrays)
+        for k in range(asked):
+            assert np.array_equal(arrays[k], whole[k])
 
 
 def test_payload_needs_few_operations() -> None:

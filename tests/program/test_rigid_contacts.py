@@ -9,8 +9,7 @@ from ptp_symbolic.models import emission
 from tests.effects.test_backlash_kinds import KINDS, PAYLOAD, platform
 
 MODES = ((1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (1.0, 1.0, 1.0), (0.0, -1.0, 1.0))
-PAIRS = (("mode_derivative", "jacobian"), ("guards", "guard_jacobian"))
-PAIRS += (("impacts", "impact_jacobian"),)
+KERNELS = ("mode_derivative", "guards", "impacts")
 
 
 def values(
@@ -29,10 +28,12 @@ def test_emitted_derivatives_in_every_mode(kind: str, modes: tuple[float, ...]) 
     rng, module, p = np.random.default_rng(3), model.module, model.parameter_vector(PAYLOAD)
     x, u, m = rng.normal(size=len(model.state_names)), rng.normal(size=2), np.array(modes)
     n, z = len(x), np.concatenate([x, p])
-    for (name, derivative), rows in zip(PAIRS, (n, 7, n + 2), strict=True):
-        by_x, by_u, by_p = np.zeros((rows, n)), np.zeros((n, 2)), np.zeros((rows, len(p)))
-        given = (by_x, by_u, by_p) if name == "mode_derivative" else (by_x, by_p)
-        getattr(module, derivative)(0.0, x, u, p, m, *given)
+    struck = np.zeros((n + 2, n)), np.zeros((n + 2, len(p)))
+    module.impact_jacobian(0.0, x, u, p, m, *struck)
+    there = model.derivatives(0.0, x, u, p, m)
+    pairs = ((there.fx, there.fp), (there.gx, there.gp), struck)
+    for name, (by_x, by_p) in zip(KERNELS, pairs, strict=True):
+        rows = len(by_x)
         for k, found in enumerate(np.hstack([by_x, by_p]).T):
             h = 1e-5 * max(abs(z[k]), 1e-3)
             above, below = z.copy(), z.copy()

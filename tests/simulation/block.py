@@ -42,15 +42,24 @@ def prepared_derivative(t, x, u, p, m, c, dx):
 
 
 @njit(error_model="numpy", nogil=True)
-def jacobian(t, x, u, p, m, fx, fu, fp):
+def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     slides = m[0] * m[0]
     fx[0, 1] = 1.0
     fx[1, 0] = -slides * stiffness(x, p) / p[0]
     fu[1, 0] = slides / p[0]
+    if len(fp) == 0:
+        return
     fp[1, 0] = -slides * (pull(x, u, p) - m[0] * p[2]) / p[0] ** 2
     fp[1, 1] = -slides * x[0] / p[0]
     fp[1, 2] = -m[0] / p[0]
     fp[1, 4] = -slides * x[0] ** 3 / p[0]
+    if len(gx) == 0:
+        return
+    gx[0, 0] = -stiffness(x, p)
+    gp[0, 1] = -x[0]
+    gp[0, 4] = -(x[0] ** 3)
+    gp[1, 3] = 1.0
+    gp[2, 3] = 1.0
 
 
 @njit(error_model="numpy", nogil=True)
@@ -58,15 +67,6 @@ def guards(t, x, u, p, m, g):
     g[0] = pull(x, u, p)
     g[1] = p[3]
     g[2] = p[3]
-
-
-@njit(error_model="numpy", nogil=True)
-def guard_jacobian(t, x, u, p, m, gx, gp):
-    gx[0, 0] = -stiffness(x, p)
-    gp[0, 1] = -x[0]
-    gp[0, 4] = -(x[0] ** 3)
-    gp[1, 3] = 1.0
-    gp[2, 3] = 1.0
 
 
 @njit(error_model="numpy", nogil=True)
@@ -102,9 +102,8 @@ def block() -> Model:
         PREPARED=0,
         prepare=prepare,
         prepared_derivative=prepared_derivative,
-        jacobian=jacobian,
+        linearize=linearize,
         guards=guards,
-        guard_jacobian=guard_jacobian,
         energy=energy,
         initial_modes=initial_modes,
         outputs=outputs,

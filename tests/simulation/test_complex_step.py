@@ -1,23 +1,21 @@
 """Sensitivities of a smooth model against the complex step, by another integrator."""
 
 import cmath
-import inspect
 
 import numpy as np
 import pytest
 
 import ptp_symbolic
+from tests.effects.plain_python import as_python
 
 STEP = 1e-30
 
 
 def complex_derivative(model):
     """The emitted right-hand side with complex functions in place of real ones."""
-    source = inspect.getsource(model.module.mode_derivative.py_func)
-    source = "def" + source.partition("def")[2]
-    scope = {"math": cmath}
-    exec(compile(source, "complex", "exec"), scope)
-    return scope["mode_derivative"]
+    plain = as_python(model).module
+    plain.math = cmath
+    return plain.mode_derivative
 
 
 @pytest.mark.parametrize("name", ["m_payload", "c_x_payload", "b_tilt", "J_pan"])

@@ -6,8 +6,6 @@ import ast
 import shutil
 from pathlib import Path
 
-import ptp_symbolic
-from ptp_symbolic.numeric.runtime.loader import load_module
 from ptp_symbolic.numeric.simulation.kernels.records import kernel_sources
 
 SIMULATION = "ptp_symbolic.numeric.simulation"
@@ -44,13 +42,3 @@ def test_a_new_file_counts_as_soon_as_a_kernel_imports_it(checkout: Path, tmp_pa
     with (package / "numeric/simulation/outputs.py").open("a") as file:
         file.write(f"from {SIMULATION}.events import (\n    slip,\n)\n")
     assert new in kernel_sources(package)
-
-
-def test_derivatives_of_guards_are_compiled_for_sensitivities_alone(checkout: Path) -> None:
-    """A drive that sticks and slips, loaded under a name of its own: nobody has compiled it."""
-    model = load_module(checkout / "generated/pan_drive.py", "ptp_model_pan_drive_of_this_test")
-    run = ptp_symbolic.simulate(model, 0.5, u_pan=12.0)
-    assert run.events
-    assert not model.module.guard_jacobian.nopython_signatures
-    ptp_symbolic.sensitivity(model, 0.5, by_parameters=["F_c_pan"], u_pan=12.0)
-    assert model.module.guard_jacobian.nopython_signatures

@@ -166,14 +166,14 @@ def put_into_gap(
     frictions = len(model.friction_rates)
     count = contact_guards(frictions, len(model.contacts))
     m, g = np.zeros(len(model.mode_names)), np.zeros(count)
-    gx, gp = np.zeros((count, len(x))), np.zeros((count, len(p)))
     at, gear = contact_guards(frictions, contact), model.module.CONTACT_ANGLES[contact][0]
     for _ in range(ROUNDS):
         model.module.guards(0.0, x, u, p, m, g)
         x[gear] -= g[at]
         if abs(g[at]) <= NEXT_TO_NONE:
             break
-    model.module.guard_jacobian(0.0, x, u, p, m, gx, gp)
+    there = model.derivatives(0.0, x, u, p, m)
+    gx, gp = there.gx, there.gp
     known = slice(0, len(columns))
     s[gear, known] -= (gx[at] @ s[:, known] + gp[at, columns]) / gx[at, gear]
     return float(g[at + 1]), gp[at + 1]

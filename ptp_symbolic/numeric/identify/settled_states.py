@@ -32,9 +32,8 @@ def settle(
         return
     n, t, u = len(x), float(run.time[0]), run.before
     m, dx = np.zeros(len(model.mode_names)), np.zeros(n)
-    fx, fu, fp = np.zeros((n, n)), np.zeros((n, len(u))), np.zeros((n, len(p)))
     model.module.initial_modes(t, x, u, p, m)
-    model.module.jacobian(t, x, u, p, m, fx, fu, fp)
+    fx = model.derivatives(t, x, u, p, m).fx
     fast = [k for k in hidden if fx[k, k] * FORGOTTEN < np.log(SAME)]
     if not fast:
         return
@@ -42,10 +41,10 @@ def settle(
     x[fast] -= np.linalg.solve(fx[fast][:, fast], dx[fast])
     if not s.shape[1]:
         return
-    model.module.jacobian(t, x, u, p, m, fx, fu, fp)
-    own, s[fast] = fx[fast][:, fast], 0.0
-    change = fx[fast] @ s
-    change[:, : len(columns)] += fp[fast][:, columns]
+    there = model.derivatives(t, x, u, p, m)
+    own, s[fast] = there.fx[fast][:, fast], 0.0
+    change = there.fx[fast] @ s
+    change[:, : len(columns)] += there.fp[fast][:, columns]
     s[fast] = -np.linalg.solve(own, change)
 
 

@@ -5,6 +5,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import ModuleType
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -59,6 +60,18 @@ class ModelParameter:
     starts: tuple[float, ...] = ()
     period: float | None = None
     locked_to: str | None = None
+
+
+class Derivatives(NamedTuple):
+    """Derivatives, in SI: of dx/dt by state fx [n, n], input fu [n, nu] and parameter fp [n, np];
+    of the guards by state gx [ng, n] and parameter gp [ng, np].
+    """
+
+    fx: FloatArray
+    fu: FloatArray
+    fp: FloatArray
+    gx: FloatArray
+    gp: FloatArray
 
 
 @dataclass(frozen=True)
@@ -281,6 +294,16 @@ class Model:
             if p.name in values:
                 _refuse_out_of_bounds(p, values[p.name])
         return np.array([values.get(n, d) for n, d in self.defaults.items()], dtype=np.float64)
+
+    def derivatives(
+        self, t: float, x: FloatArray, u: FloatArray, p: FloatArray, m: FloatArray
+    ) -> Derivatives:
+        """Derivatives of dx/dt and of the guards at t in s, x [n], u [nu], p [np], modes m [nm]."""
+        n, guards = len(x), 3 * len(self.friction_rates) + 4 * len(self.contacts)
+        shapes = ((n, n), (n, len(u)), (n, len(p)), (guards, n), (guards, len(p)))
+        found = Derivatives(*map(np.zeros, shapes))
+        self.module.linearize(t, x, u, p, m, *found)
+        return found
 
     def prepared(self, p: FloatArray) -> FloatArray:
         """Return the subexpressions of p [np] alone that `prepared_derivative` takes."""

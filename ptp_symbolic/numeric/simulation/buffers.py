@@ -30,7 +30,9 @@ def new_record(times: FloatArray, n: int, ns: int, ledger: int, event_room: int)
 
 
 def new_step(n: int, nu: int, parameters: int, solved: int) -> Step:
-    """Preallocated arrays of a step of n states, the first `solved` of them in linear systems."""
+    """Preallocated arrays of a step of n states, the first `solved` of them in linear systems; with
+    no `parameters` derivatives by these are not asked for.
+    """
     z, width = np.zeros, padded(n)
     return Step(
         z(width),
@@ -41,7 +43,7 @@ def new_step(n: int, nu: int, parameters: int, solved: int) -> Step:
         z((5, width)),
         z((n, n)),
         z((n, nu)),
-        z((n, parameters)),
+        z((n if parameters else 0, parameters)),
         z((solved, width)),
         z((solved, width)),
         z(n, dtype=np.int64),

@@ -81,7 +81,7 @@ def integrate_in_fixed_steps(
     work = StepWork(
         z((n, n)),
         z((n, nu)),
-        z((n, len(p))),
+        z((0, len(p))),
         z((n, n)),
         z(n, np.int64),
         z(n),

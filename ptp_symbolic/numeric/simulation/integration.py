@@ -200,11 +200,9 @@ def stable_step(model: Model, p: FloatArray, x: FloatArray) -> float:
     """Step in s at which the explicit method is stable, by the spectral radius of the Jacobian at x
     [n], p [np] in open modes, and with every friction sliding and every contact closed.
     """
-    n, nu = len(x), len(model.input_names)
-    fx, fu, fp = np.zeros((n, n)), np.zeros((n, nu)), np.zeros((n, len(p)))
-    fastest = 0.0
+    u, fastest = np.zeros(len(model.input_names)), 0.0
     for modes in (np.zeros(len(model.mode_names)), np.ones(len(model.mode_names))):
-        model.module.jacobian(0.0, x, np.zeros(nu), p, modes, fx, fu, fp)
+        fx = model.derivatives(0.0, x, u, p, modes).fx
         if np.all(np.isfinite(fx)):
             fastest = max(fastest, float(np.abs(np.linalg.eigvals(fx)).max()))
     return STABLE / fastest if fastest > 0.0 else np.inf
@@ -274,7 +272,7 @@ def _integrate(
         stops,
         np.array([accuracy.relative, accuracy.largest_step, accuracy.most_steps]),
         accuracy.absolute,
-        tuple(new_step(n, nu, len(p), solved)),
+        tuple(new_step(n, nu, len(p) if s.shape[1] else 0, solved)),
         tuple(watch),
         tuple(tangents),
         tuple(record),

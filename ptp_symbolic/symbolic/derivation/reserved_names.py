@@ -4,8 +4,13 @@ import keyword
 
 from ptp_symbolic.symbolic.derivation.equations import Equations
 
-VARIABLES = frozenset({"t", "x", "u", "p", "m", "g", "y", "z", "e", "r", "dx", "np", "math"})
-PREFIXES = ("mass_", "force_", "accel_", "inverse_", "slide_", "side_", "active_", "rate_of_")
+VARIABLES = frozenset(
+    ["t", "x", "u", "p", "m", "c", "g", "y", "z", "e", "r", "dx", "forces", "np", "math"]
+)
+PREFIXES = (
+    *("mass_", "force_", "accel_", "inverse_", "slide_", "side_", "active_", "rate_of_"),
+    *("given_", "balance_"),
+)
 
 
 def refuse_reserved_names(equations: Equations) -> None:

@@ -5,17 +5,18 @@ derivatives of accelerations are taken implicitly from M a = F. Where rigid cont
 output to its joint, the gear's row is added to the joint's, and the gear follows.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from ptp_symbolic.symbolic.derivation.contributions import slope_symbol
 from ptp_symbolic.symbolic.derivation.differentiation import derivative
 from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
 from ptp_symbolic.symbolic.effect_interface.place import slide
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.program.chain import ChainRule, chain_rule
-from ptp_symbolic.symbolic.program.sharing import Line
+from ptp_symbolic.symbolic.program.sharing import Line, if_shared
 from ptp_symbolic.symbolic.simplify.solve import inverse_values, partner_of, solved
 from ptp_symbolic.symbolic.symbols import ZERO, real
 
@@ -163,31 +164,63 @@ def prepared(lines: Sequence[Line], parameters: Sequence[str]) -> tuple[list[Lin
     return once, each
 
 
-def acceleration_derivative(
-    equations: Equations, solve: Solve, variable: sp.Symbol
+@dataclass(frozen=True)
+class Slopes:
+    """Derivatives of the accelerations: `by` variable, which `lines` define with those that are not
+    zero.
+    """
+
+    lines: tuple[Line, ...]
+    by: dict[sp.Symbol, list[sp.Expr]]
+
+
+def acceleration_slopes(
+    equations: Equations, solve: Solve, variables: Iterable[sp.Symbol]
+) -> Slopes:
+    """Derivatives of every acceleration by `variables`, from M a = F without inverting M."""
+    chain = solve.chain
+    lines: list[Line] = []
+    by: dict[sp.Symbol, list[sp.Expr]] = {}
+    for variable in (*chain.constants, *variables):
+        values = _acceleration_partials(equations, solve, variable, lines)
+        for constant, weight in chain.weights.get(variable, {}).items():
+            values = [v + weight * b for v, b in zip(values, by[constant], strict=True)]
+        by[variable] = []
+        for acceleration, value in zip(solve.accelerations, values, strict=True):
+            name = slope_symbol(acceleration, variable)
+            by[variable].append(name if value != 0 else ZERO)
+            lines += [(str(name), value)] if value != 0 else []
+    return Slopes((*chain.lines, *lines), by)
+
+
+def _acceleration_partials(
+    equations: Equations, solve: Solve, variable: sp.Symbol, lines: list[Line]
 ) -> list[sp.Expr]:
-    """Derivative of every acceleration by `variable`, from M a = F without inverting M."""
+    """Derivative of every acceleration by `variable`, the other constants held. That of the balance
+    F - M a of every row joins `lines`.
+    """
     values = dict(solve.definitions)
     right = []
-    for i in range(len(equations.rates)):
-        term = solve.chain.derivative(values[str(solve.force[i])], variable)
+    for i, rate in enumerate(equations.rates):
+        force = str(solve.force[i])
+        term = solve.chain.partial(values[force], variable, force)
         for j, acceleration in enumerate(solve.accelerations):
-            term -= solve.chain.derivative(equations.mass_matrix[i, j], variable) * acceleration
+            term -= solve.chain.partial(equations.mass_matrix[i, j], variable) * acceleration
+        if not term.is_Atom:
+            name = if_shared(f"balance_{kinematics.place_of(rate)}_by_{variable}")
+            lines.append((str(name), term))
+            term = name
         right.append(term)
     return solve.solve(right)
 
 
 def derivative_of(
-    equations: Equations,
-    solve: Solve,
-    expression: sp.Expr,
-    variable: sp.Symbol,
-    acceleration_by: Sequence[sp.Expr],
+    solve: Solve, slopes: Slopes, expression: sp.Expr, variable: sp.Symbol
 ) -> sp.Expr:
     """Total derivative of an expression that may hold accelerations and mass matrix entries."""
     values = dict(solve.definitions)
     result = solve.chain.derivative(expression, variable)
-    for acceleration, by in zip(solve.accelerations, acceleration_by, strict=True):
+    for acceleration, by in zip(solve.accelerations, slopes.by[variable], strict=True):
         result += derivative(expression, acceleration) * by
     for symbol in sorted(solve.mass.free_symbols & expression.free_symbols, key=str):
         slope = solve.chain.derivative(values[str(symbol)], variable)

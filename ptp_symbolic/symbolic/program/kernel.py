@@ -3,6 +3,7 @@
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import NamedTuple
 
 import sympy as sp
@@ -11,6 +12,7 @@ from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.program.sharing import Line, share
 from ptp_symbolic.symbolic.program.term_names import vocabulary
 
+GIVEN = "given_"  # before the names of accelerations that are arguments
 MODE_ARGUMENTS = "t, x, u, p, m"
 ENTRY = re.compile(r"(\w+)\[(\d+)(?:, (\d+))?\]")
 
@@ -20,6 +22,9 @@ class Entry(NamedTuple):
 
     array: str
     indices: tuple[int, ...]
+
+    def __str__(self) -> str:
+        return f"{self.array}[{', '.join(map(str, self.indices))}]"
 
 
 class Assignment(NamedTuple):
@@ -44,6 +49,16 @@ class Vectors:
     c: tuple[str, ...]
     rows: Mapping[str, tuple[str, str]] = field(default_factory=dict)
 
+    def unpacked(self, lines: Sequence[Line]) -> tuple[tuple[str, str, int], ...]:
+        """Names that `lines` use and do not assign, with array and index, states first."""
+        used = used_names(lines) - {name for name, _ in lines}
+        return tuple(
+            (name, array, index)
+            for array in "xupmc"
+            for index, name in enumerate(getattr(self, array))
+            if name in used
+        )
+
     def shape(self, argument: str) -> tuple[int, ...]:
         """Shape of an array that is an argument of a kernel."""
         if argument in self.rows:
@@ -55,18 +70,44 @@ class Vectors:
 
 
 @dataclass(frozen=True, eq=False)
-class Kernel:
-    """A function that computes `lines` in turn: named terms, each before it is used, and entries of
-    the arrays that it writes. Entries that are zero whatever the arguments are not written.
-
-    `arguments` are the time and the names of arrays, whose entries `vectors` names.
-    """
+class Part:
+    """Lines that kernels have in common: a function of `arguments` that returns the `results`."""
 
     name: str
     arguments: tuple[str, ...]
     doc: str
     vectors: Vectors
     lines: tuple[Line, ...]
+    results: tuple[str, ...]
+
+    @property
+    def unpacked(self) -> tuple[tuple[str, str, int], ...]:
+        """Names that the lines use and do not assign, with array and index, states first."""
+        return self.vectors.unpacked(self.lines)
+
+
+@dataclass(frozen=True, eq=False)
+class Kernel:
+    """A function that computes `lines` in turn: named terms, each before it is used, and entries of
+    the arrays that it writes. Entries that are zero whatever the arguments are not written. What
+    `parts` compute comes before its `own` lines.
+
+    `arguments` are the time and the names of arrays, whose entries `vectors` names. Where an array
+    of `optional` is empty, neither it nor those after it are asked for.
+    """
+
+    name: str
+    arguments: tuple[str, ...]
+    doc: str
+    vectors: Vectors
+    own: tuple[Line, ...]
+    optional: tuple[str, ...] = ()
+    parts: tuple[Part, ...] = ()
+
+    @cached_property
+    def lines(self) -> tuple[Line, ...]:
+        """All lines: those of the parts that are needed, then its own."""
+        return (*needed([line for part in self.parts for line in part.lines], self.own), *self.own)
 
     @property
     def written(self) -> tuple[str, ...]:
@@ -85,38 +126,50 @@ class Kernel:
     @property
     def body(self) -> tuple[Assignment, ...]:
         """The lines with their targets parsed."""
-        return tuple(Assignment(_target(name), e) for name, e in self.lines)
+        return _parsed(self.lines)
+
+    def sections(
+        self, lines: Sequence[Line]
+    ) -> tuple[tuple[str | None, tuple[Assignment, ...]], ...]:
+        """Some of its `lines` in parts: what is always computed, then what is computed where an
+        optional array is asked for, with the name of the array.
+        """
+        order, body = self.arguments, _parsed(lines)
+        starts: list[tuple[str | None, int]] = [(None, 0)]
+        for array in self.optional:
+            ends = [
+                place + 1
+                for place, (target, _) in enumerate(body)
+                if isinstance(target, Entry) and order.index(target.array) < order.index(array)
+            ]
+            starts.append((array, max(ends, default=0)))
+        stops = [*(start for _, start in starts[1:]), len(body)]
+        parts = [(a, body[start:stop]) for (a, start), stop in zip(starts, stops, strict=True)]
+        return tuple((array, part) for array, part in parts if part)
 
     @property
     def unpacked(self) -> tuple[tuple[str, str, int], ...]:
         """Names that the lines use and do not assign, with array and index, states first."""
-        used = used_names(self.lines) - {name for name, _ in self.lines}
-        return tuple(
-            (name, array, index)
-            for array in "xupmc"
-            for index, name in enumerate(getattr(self.vectors, array))
-            if name in used
-        )
+        return self.vectors.unpacked(self.lines)
 
     def restricted(self, name: str, doc: str, arrays: Sequence[str]) -> "Kernel":
         """The kernel that writes some of the `arrays` alone, without the terms of the others."""
-        kept: list[Line] = []
-        needed: set[str] = set()
-        for (target, expression), assignment in reversed(
-            list(zip(self.lines, self.body, strict=True))
-        ):
-            place = assignment.target
-            wanted = place.array in arrays if isinstance(place, Entry) else target in needed
-            if wanted:
-                kept.append((target, expression))
-                needed |= {str(symbol) for symbol in expression.free_symbols}
+        own = [
+            line
+            for line, (target, _) in zip(self.lines, self.body, strict=True)
+            if isinstance(target, Entry) and target.array in arrays
+        ]
         arguments = tuple(a for a in self.arguments if a not in self.written or a in arrays)
-        return Kernel(name, arguments, doc, self.vectors, tuple(reversed(kept)))
+        return Kernel(name, arguments, doc, self.vectors, tuple(with_needed(self.lines, own)))
 
 
 def kernel(name: str, arguments: str, doc: str, vectors: Vectors, lines: Sequence[Line]) -> Kernel:
     """The kernel `name` of `arguments`, as they stand between parentheses."""
     return Kernel(name, tuple(arguments.split(", ")), doc, vectors, tuple(lines))
+
+
+def _parsed(lines: Sequence[Line]) -> tuple[Assignment, ...]:
+    return tuple(Assignment(_target(name), e) for name, e in lines)
 
 
 def _target(name: str) -> str | Entry:
@@ -146,3 +199,19 @@ def shared_lines(
 def used_names(lines: Sequence[Line]) -> set[str]:
     """Names of the symbols that `lines` use."""
     return {str(symbol) for _, expression in lines for symbol in expression.free_symbols}
+
+
+def needed(lines: Sequence[Line], by: Sequence[Line]) -> list[Line]:
+    """Those of `lines` that compute what the lines `by` use."""
+    wanted, kept = used_names(by), []
+    for name, expression in reversed(lines):
+        if name in wanted:
+            kept.append((name, expression))
+            wanted |= {str(symbol) for symbol in expression.free_symbols}
+    return kept[::-1]
+
+
+def with_needed(lines: Sequence[Line], own: Sequence[Line]) -> list[Line]:
+    """Those of `lines` that are `own` or that compute what these use."""
+    kept = {name for name, _ in (*own, *needed(lines, own))}
+    return [line for line in lines if line[0] in kept]

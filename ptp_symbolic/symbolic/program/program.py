@@ -8,27 +8,21 @@ import sympy as sp
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.program import dynamics
-from ptp_symbolic.symbolic.program.kernel import Kernel, Vectors, used_names
+from ptp_symbolic.symbolic.program.kernel import Kernel, Part, Vectors
 from ptp_symbolic.symbolic.program.motion import (
-    equation_error_kernel,
-    guard_jacobian_kernel,
-    guards_kernel,
+    Motion,
     impact_kernels,
-    jacobian_kernel,
-    mode_derivative_kernel,
-    prepare_kernel,
-    prepared_derivative_kernel,
+    linearize_kernel,
+    motion,
 )
-from ptp_symbolic.symbolic.program.sharing import Line, share
 from ptp_symbolic.symbolic.program.signals import (
     domain_kernel,
-    energy_kernel,
+    energies,
     margins_kernel,
     output_jacobian_kernel,
     outputs_kernel,
     sampler_kernels,
 )
-from ptp_symbolic.symbolic.program.term_names import vocabulary
 from ptp_symbolic.symbolic.simplify.base_parameters import base_form
 
 
@@ -61,13 +55,15 @@ class Layout:
 @dataclass(frozen=True, eq=False)
 class Program:
     """What a target writes: `equations` with their names, units and bounds, in `computed` as the
-    kernels compute them; the kernels, in the order in which they are written.
+    kernels compute them; the kernels, in the order in which they are written, and the parts that
+    they have in common.
     """
 
     equations: Equations
     computed: Equations
     vectors: Vectors
     kernels: tuple[Kernel, ...]
+    parts: tuple[Part, ...]
     operations: Operations
     layout: Layout
 
@@ -90,7 +86,7 @@ def program(equations: Equations) -> Program:
     """The program that computes `equations`; it depends on the mathematics alone."""
     computed = _in_base_parameters(equations)
     solve = dynamics.solve_accelerations(computed)
-    rates, guards = _state_lines(computed, solve), dynamics.guard_expressions(computed, solve)
+    guards = dynamics.guard_expressions(computed, solve)
     vectors = Vectors(
         tuple(map(str, equations.state_symbols)),
         tuple(i.name for i in equations.inputs),
@@ -99,26 +95,21 @@ def program(equations: Equations) -> Program:
         (),
         _rows(equations, len(guards)),
     )
-    once, each = dynamics.prepared(rates, vectors.p)
-    vectors = replace(vectors, c=tuple(name for name, _ in once if name in used_names(each)))
+    own = motion(computed, solve, guards, energies(equations, solve), vectors)
+    vectors = own.prepared.vectors
     kernels = (
-        mode_derivative_kernel(rates, vectors),
-        prepare_kernel(once, vectors),
-        prepared_derivative_kernel(each, vectors),
-        jacobian_kernel(computed, solve, vectors),
-        guards_kernel(computed, solve, guards, vectors),
-        guard_jacobian_kernel(computed, solve, guards, vectors),
+        *own.kernels,
+        linearize_kernel(computed, solve, guards, vectors),
         *impact_kernels(computed, solve, vectors),
         outputs_kernel(computed, solve, vectors),
         output_jacobian_kernel(equations, computed, solve, vectors),
-        energy_kernel(equations, vectors),
-        equation_error_kernel(computed, solve, vectors),
         domain_kernel(equations, vectors),
         margins_kernel(equations, vectors),
         *sampler_kernels(equations, vectors),
     )
-    operations = _operations(equations, rates, each)
-    return Program(equations, computed, vectors, kernels, operations, layout(equations))
+    operations = _operations(equations, own)
+    parts = (own.prepared, own.forces)
+    return Program(equations, computed, vectors, kernels, parts, operations, layout(equations))
 
 
 def layout(equations: Equations) -> Layout:
@@ -168,21 +159,20 @@ def _rows(equations: Equations, guards: int) -> dict[str, tuple[str, str]]:
     }
 
 
-def _operations(equations: Equations, lines: Sequence[Line], each: Sequence[Line]) -> Operations:
+def _operations(equations: Equations, own: Motion) -> Operations:
     derived = [e for _, e in dynamics.solve_accelerations(equations).definitions]
     derived += [state.derivative for state in equations.extra_states]
+    lines = {kernel.name: kernel.lines for kernel in own.kernels}
     return Operations(
         *(
             sum(int(sp.count_ops(e)) for e in es)
-            for es in (derived, (e for _, e in lines), (e for _, e in each))
+            for es in (
+                derived,
+                (e for _, e in lines["mode_derivative"]),
+                (e for _, e in lines["prepared_derivative"]),
+            )
         )
     )
-
-
-def _state_lines(equations: Equations, solve: dynamics.Solve) -> list[Line]:
-    rates = dynamics.state_rates(equations, solve)
-    outputs = [(f"dx[{i}]", rate) for i, rate in enumerate(rates)]
-    return share(solve.definitions, outputs, vocabulary(equations))
 
 
 def _in_base_parameters(equations: Equations) -> Equations:

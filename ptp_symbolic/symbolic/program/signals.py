@@ -1,6 +1,7 @@
 """Kernels of what is read of the state and set in it: outputs, energies, bounds, samplers."""
 
-from ptp_symbolic.symbolic.derivation.contributions import slope_symbol
+import sympy as sp
+
 from ptp_symbolic.symbolic.derivation.differentiation import derivative
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.program import dynamics
@@ -14,6 +15,7 @@ from ptp_symbolic.symbolic.program.kernel import (
 )
 from ptp_symbolic.symbolic.program.sharing import share
 from ptp_symbolic.symbolic.program.term_names import vocabulary
+from ptp_symbolic.symbolic.symbols import ZERO
 
 
 def outputs_kernel(grouped: Equations, solve: dynamics.Solve, vectors: Vectors) -> Kernel:
@@ -29,34 +31,37 @@ def output_jacobian_kernel(
 ) -> Kernel:
     """Kernel `output_jacobian`: by the chain rule through accelerations where outputs have any."""
     accelerated = any(e.has(*solve.accelerations) for _, _, e in equations.outputs)
-    outputs, slopes = [], []
-    for letter, symbols in variables(equations):
-        for j, variable in enumerate(symbols if letter != "u" else ()):
-            named = [slope_symbol(a, variable) for a in solve.accelerations]
-            if accelerated:
-                values = dynamics.acceleration_derivative(grouped, solve, variable)
-                slopes += [(str(name), value) for name, value in zip(named, values, strict=True)]
-            for i, (_, _, expression) in enumerate(equations.outputs):
-                value = (
-                    dynamics.derivative_of(grouped, solve, expression, variable, named)
-                    if accelerated
-                    else derivative(equations.written_out(expression), variable)
-                )
-                outputs.append((f"y{letter}[{i}, {j}]", value))
+    columns = [(letter, own) for letter, own in variables(equations) if letter != "u"]
+    every = [symbol for _, own in columns for symbol in own]
+    slopes = dynamics.acceleration_slopes(grouped, solve, every) if accelerated else None
+    outputs = [
+        (
+            f"y{letter}[{i}, {j}]",
+            dynamics.derivative_of(solve, slopes, expression, variable)
+            if slopes
+            else derivative(equations.written_out(expression), variable),
+        )
+        for letter, own in columns
+        for j, variable in enumerate(own)
+        for i, (_, _, expression) in enumerate(equations.outputs)
+    ]
     doc = "Write the non-zero derivatives of outputs by state and parameter."
-    definitions = (*solve.definitions, *solve.chain.lines, *slopes) if accelerated else ()
-    lines = shared_lines(grouped if accelerated else equations, definitions, outputs)
+    definitions = (*solve.definitions, *slopes.lines) if slopes else ()
+    lines = shared_lines(grouped if slopes else equations, definitions, outputs)
     return kernel("output_jacobian", "t, x, u, p, yx, yp", doc, vectors, lines)
 
 
-def energy_kernel(equations: Equations, vectors: Vectors) -> Kernel:
-    """Kernel `energy`."""
-    ledger = equations.ledger
-    outputs = [("e[0]", ledger.stored), ("e[1]", ledger.power_in), ("e[2]", ledger.dissipated)]
-    doc = "Write stored energy in J, power in and dissipated power in W into e."
-    terms = [(str(symbol), term) for symbol, term in equations.terms]
-    lines = share(terms, outputs, vocabulary(equations))
-    return kernel("energy", f"{MODE_ARGUMENTS}, e", doc, vectors, lines)
+def energies(equations: Equations, solve: dynamics.Solve) -> list[sp.Expr]:
+    """Stored energy, power in and dissipated power; the kinetic energy in terms of `solve` where it
+    is the quadratic form of the mass matrix.
+    """
+    ledger, rates = equations.ledger, sp.Matrix(equations.rates)
+    stored = ledger.stored
+    at_rest = stored.xreplace(dict.fromkeys(rates, ZERO))
+    kinetic = (rates.T * equations.mass_matrix * rates)[0] / 2
+    if sp.expand(stored - at_rest - kinetic) == 0:
+        stored = at_rest + sp.expand((rates.T * solve.mass * rates)[0] / 2)
+    return [stored, ledger.power_in, ledger.dissipated]
 
 
 def domain_kernel(equations: Equations, vectors: Vectors) -> Kernel:

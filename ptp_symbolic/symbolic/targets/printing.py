@@ -4,6 +4,7 @@ Sums, products, quotients and whole powers are written alike everywhere, in SymP
 languages with the same arithmetic compute the same bits.
 """
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import reduce
@@ -57,7 +58,8 @@ class Language:
 
     def expression(self, expression: sp.Expr) -> str:
         """Source of an expression."""
-        return str(Printer(self).doprint(expression))
+        text = str(Printer(self).doprint(expression))
+        return text[1:-1] if _end_of_parentheses(text, 0) == len(text) else text
 
 
 class Printer(PythonCodePrinter):
@@ -105,7 +107,7 @@ class Printer(PythonCodePrinter):
             root = "sqrt" if exponent > 0 else "inverse sqrt"
             return operations[root].format(self._print(base))
         if exponent.is_Integer and 0 < abs(int(exponent)) <= LARGEST_PRODUCT:
-            factor = self.parenthesize(base, PRECEDENCE["Atom"], strict=True)
+            factor = self._atom(base)
             product = " * ".join([factor] * abs(int(exponent)))
             if exponent > 0:
                 return product if exponent == 1 else f"({product})"
@@ -140,11 +142,29 @@ class Printer(PythonCodePrinter):
         if abs(coefficient) != 1 or not above:
             above.insert(0, self.doprint(abs(coefficient)))
         divisor = sp.Mul(*[1 / f for f in under])
-        below = self.parenthesize(divisor, PRECEDENCE["Atom"], strict=True) if under else None
+        below = self._atom(divisor) if under else None
         return bool(coefficient.is_negative), above, below
+
+    def _atom(self, expression: sp.Expr) -> str:
+        """An expression, in parentheses unless it is a name, a call or in them already."""
+        text = self._print(expression)
+        called = expression.is_Function and re.match(r"[\w.]+\(", text)
+        closed = "(" in text and _end_of_parentheses(text, text.index("(")) == len(text)
+        enclosed = closed and (called or text.startswith("("))
+        return text if expression.is_Atom or enclosed else f"({text})"
 
     def _factor(self, expression: sp.Expr) -> str:
         """A factor, in parentheses where a product needs them."""
         if expression.is_Rational and expression.is_nonnegative:
             return str(self.doprint(expression))
         return str(self.parenthesize(expression, PRECEDENCE["Mul"], strict=True))
+
+
+def _end_of_parentheses(text: str, start: int) -> int:
+    """The place behind the parenthesis that closes the one at `start`; -1 without one."""
+    depth = 0
+    for place in range(start, len(text)):
+        depth += (text[place] == "(") - (text[place] == ")")
+        if depth == 0:
+            return place + 1 if place > start else -1
+    return -1

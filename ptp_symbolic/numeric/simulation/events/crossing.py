@@ -38,7 +38,7 @@ def cross(equations, inputs, t, x, watch, tangents, record):
     evaluate_inputs(t, 1, *inputs.table, inputs.cursor, inputs.u)
     copy(m, watch.m_before)
     if ns > 0:
-        by_time = differentiate_guard(equations, inputs, t, x, watch)
+        by_time = differentiate_guard(equations, inputs, t, x, watch, tangents)
         follow_to_event(by_time, watch, tangents)
     if not settle(equations, t, x, inputs.u, watch, tangents):
         return False
@@ -57,7 +57,7 @@ def cross(equations, inputs, t, x, watch, tangents, record):
 
 
 @inlined
-def differentiate_guard(equations, inputs, t, x, watch):
+def differentiate_guard(equations, inputs, t, x, watch, tangents):
     """Write the gradient of the event function that ended its mode into watch.by_x [n] and
     watch.by_p [np]; returns its partial derivative by time, per s.
     """
@@ -73,7 +73,19 @@ def differentiate_guard(equations, inputs, t, x, watch):
         clear(watch.by_x)  # it starts from rest without a jump
         clear(watch.by_p)
         return 0.0
-    call(equations.guard_jacobian, t, x, inputs.u, p, m, watch.gx, watch.gp)
+    call(
+        equations.linearize,
+        t,
+        x,
+        inputs.u,
+        p,
+        m,
+        tangents.fx[0],
+        tangents.fu,
+        tangents.fp,
+        watch.gx,
+        watch.gp,
+    )
     violation_gradient(element, m, watch.g, watch.gx, watch.gp, rates, watch.by_x, watch.by_p)
     if inputs.held:
         return 0.0

@@ -26,14 +26,18 @@ def derivative(equations, t, x, u, m, out):
 
 @inlined
 def jacobian(equations, t, x, u, m, fx, fu, fp):
-    """Write the Jacobians fx [n, n], fu [n, nu], fp [n, np] of `derivative`."""
-    call(equations.jacobian, t, x, u, equations.p, m, fx, fu, fp)
+    """Write the Jacobians fx [n, n], fu [n, nu], fp [n, np] of `derivative`; an fp without rows is
+    not asked for.
+    """
+    none = fx[:0]
+    call(equations.linearize, t, x, u, equations.p, m, fx, fu, fp, none, none)
     for contact in range(len(equations.contacts)):
         if equations.contacts[contact, PRESSED] == 1:
             gear = equations.contacts[contact, 0]
             clear(fx[gear])
             clear(fu[gear])
-            clear(fp[gear])
+            if len(fp) > 0:
+                clear(fp[gear])
 
 
 @inlined

@@ -20,31 +20,35 @@ _VECTOR, _MATRIX = types.float64[::1], types.float64[:, ::1]
 _WRITES_VECTOR = types.void(*_AT, _VECTOR)
 SIGNATURES = {
     "prepared_derivative": types.void(*_AT, _VECTOR, _VECTOR),
-    "jacobian": types.void(*_AT, _MATRIX, _MATRIX, _MATRIX),
+    "linearize": types.void(*_AT, *[_MATRIX] * 5),
     "guards": _WRITES_VECTOR,
-    "guard_jacobian": types.void(*_AT, _MATRIX, _MATRIX),
     "energy": _WRITES_VECTOR,
 }
 SAMPLER_SIGNATURES = {
     "sample": _WRITES_VECTOR,
-    "sample_jacobian": SIGNATURES["jacobian"],
+    "sample_jacobian": types.void(*_AT, _MATRIX, _MATRIX, _MATRIX),
 }
 OUTPUT_SIGNATURES = {
     "outputs": types.void(*_AT[:-1], _VECTOR),
     "output_jacobian": types.void(*_AT[:-1], _MATRIX, _MATRIX),
 }
-DERIVATIVE, JACOBIAN, GUARDS, GUARD_JACOBIAN, ENERGY = range(5)
+DERIVATIVE, LINEARIZE, GUARDS, ENERGY = range(4)
 IMPACT_SIGNATURES = {
     "impacts": _WRITES_VECTOR,
     "impact_jacobian": types.void(*_AT, _MATRIX, _MATRIX),
 }
 
-OF_TANGENTS = ("guard_jacobian", "impact_jacobian")
+CALLED = [
+    signature
+    for own in (SIGNATURES, IMPACT_SIGNATURES, SAMPLER_SIGNATURES, OUTPUT_SIGNATURES)
+    for signature in own.values()
+]
+OF_TANGENTS = ("impact_jacobian",)
 
 
 @lru_cache(maxsize=256)
 def addresses(module: ModuleType, tangents: bool = True) -> NDArray[np.int64]:
-    """Addresses [7] of the compiled functions of an emitted module, in the order above.
+    """Addresses [6] of the compiled functions of an emitted module, in the order above.
 
     A module without rigid contacts has no impacts, and zeros as their addresses; so have functions
     that runs without `tangents` never call, which are not compiled for them.
@@ -92,7 +96,7 @@ def call(typing_context: Any, address: Any, *arguments: Any) -> Any:
     Raises TypeError, when it is compiled, for arguments that no emitted function takes.
     """
     signature = types.void(*arguments)
-    if signature not in (*SIGNATURES.values(), *OUTPUT_SIGNATURES.values()):
+    if signature not in CALLED:
         raise TypeError(f"no emitted function takes {signature}")
 
     def generate(context: Any, builder: Any, _: Any, values: Any) -> Any:

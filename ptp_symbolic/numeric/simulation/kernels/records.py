@@ -50,9 +50,8 @@ class Equations(NamedTuple):
     """
 
     derivative: Any
-    jacobian: Any
+    linearize: Any
     guards: Any
-    guard_jacobian: Any
     energy: Any
     p: Any
     prepared: Any
@@ -83,9 +82,9 @@ class Step(NamedTuple):
     Rows have a width w of n rounded up to a multiple of LANES (see `lanes`), zero beyond n. slope,
     by_time [w]: dx/dt at the start and its partial derivative by time; stage, k [8, w]; end [n];
     dense [5, w]: coefficients of the state by powers of the fraction of the step; fx [n, n], fu
-    [n, nu], fp [n, np] at the start; inverse of the matrix of the implicit stages, also by columns
-    [n, w], with no tangents without the sampled states, and its pivots `order` [n]; point, right,
-    added [w]: scratch.
+    [n, nu], fp [n, np] (no rows without tangents) at the start; inverse of the matrix of the
+    implicit stages, also by columns [n, w], with no tangents without the sampled states, and its
+    pivots `order` [n]; point, right, added [w]: scratch.
     """
 
     slope: Any
@@ -247,21 +246,19 @@ def kernel_sources(package: Path) -> set[Path]:
 
 @inlined
 def equations_at(functions, p, prepared, friction_rates, zero_at_rest, contacts):
-    """Equations of the model whose emitted functions have the addresses `functions` [7]."""
-    derivative, jacobian, guards, guard_jacobian, energy, impacts, impact_jacobian = (
+    """Equations of the model whose emitted functions have the addresses `functions` [6]."""
+    derivative, linearize, guards, energy, impacts, impact_jacobian = (
         functions[0],
         functions[1],
         functions[2],
         functions[3],
         functions[4],
         functions[5],
-        functions[6],
     )
     return Equations(
         derivative,
-        jacobian,
+        linearize,
         guards,
-        guard_jacobian,
         energy,
         p,
         prepared,

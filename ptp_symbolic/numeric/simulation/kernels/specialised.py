@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from ptp_symbolic.numeric.simulation.kernels.calls import (
     DERIVATIVE,
     GUARDS,
-    JACOBIAN,
+    LINEARIZE,
     SIGNATURES,
     addresses,
 )
@@ -30,7 +30,7 @@ IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
 PAYS_AFTER = 50_000  # samples; each is integrated about 1 us faster
-SPECIALISED = {"prepared_derivative": DERIVATIVE, "jacobian": JACOBIAN, "guards": GUARDS}
+SPECIALISED = {"prepared_derivative": DERIVATIVE, "linearize": LINEARIZE, "guards": GUARDS}
 # A product with zero is zero, whatever its sign: nothing that is finite changes its value.
 ZERO_ANNIHILATES = (r"\b(fmul|fadd|fsub|fdiv) double", r"\1 nnan nsz double")
 MEMSET = "declare void @llvm.memset.p0.i64(ptr, i8, i64, i1)"

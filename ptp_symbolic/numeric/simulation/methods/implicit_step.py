@@ -25,7 +25,7 @@ GAMMA = 1.0 - math.sqrt(0.5)
 
 
 class StepWork(NamedTuple):
-    """Preallocated arrays of a step: Jacobians fx [n, n], fu [n, nu], fp [n, np]; LU factors [n, n]
+    """Preallocated arrays of a step: Jacobians fx [n, n], fu [n, nu], fp [0, np]; LU factors [n, n]
     and pivots [n]; stages k1, k2 and state end [n]; refused [f, 2].
     """
 

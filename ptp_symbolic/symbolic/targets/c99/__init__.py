@@ -4,7 +4,7 @@ import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from importlib import resources
 
-from ptp_symbolic.symbolic.program.kernel import Entry, Kernel
+from ptp_symbolic.symbolic.program.kernel import Assignment, Entry, Kernel
 from ptp_symbolic.symbolic.program.program import Program
 from ptp_symbolic.symbolic.targets.c99.language import DOUBLE, FLOAT
 from ptp_symbolic.symbolic.targets.printing import Language
@@ -148,7 +148,7 @@ def _kernels(program: Program) -> list[Kernel]:
     found = []
     for kernel in program.kernels:
         found.append(kernel)
-        if kernel.name == "jacobian":
+        if kernel.name == "linearize":
             doc = "Write the non-zero derivatives of mode_derivative by state."
             found.append(kernel.restricted("state_jacobian", doc, ("fx",)))
     return found
@@ -157,12 +157,9 @@ def _kernels(program: Program) -> list[Kernel]:
 def _function(kernel: Kernel, name: str, language: Language) -> str:
     """The definition of a kernel."""
     lines = [f"const real {_id(n, language)} = {a}[{k}];" for n, a, k in kernel.unpacked]
-    for target, expression in kernel.body:
-        text = language.expression(expression)
-        if isinstance(target, Entry):
-            lines.append(f"{target.array}[{_flat(kernel, target)}] = {text};")
-        else:
-            lines.append(f"const real {_id(target, language)} = {text};")
+    for optional, part in kernel.sections(kernel.lines):
+        lines += [f"if ({optional} == 0)", "    return;"] if optional else []
+        lines += [_statement(kernel, each, language) for each in part]
     if kernel.finds_modes:
         lines[:0] = ["real m[MODES];", f"{name}_initial_modes(t, x, u, p, m);"]
     used = {array for _, array, _ in kernel.unpacked}
@@ -174,6 +171,14 @@ def _function(kernel: Kernel, name: str, language: Language) -> str:
     body = "\n".join(f"    {_broken(line)}" for line in lines)
     head = "\n".join(_filled([f"void {_signature(kernel, name, language)}"]))
     return f"{head}\n{{\n{body}\n}}"
+
+
+def _statement(kernel: Kernel, assignment: Assignment, language: Language) -> str:
+    target, expression = assignment
+    text = language.expression(expression)
+    if isinstance(target, Entry):
+        return f"{target.array}[{_flat(kernel, target)}] = {text};"
+    return f"const real {_id(target, language)} = {text};"
 
 
 def _signature(kernel: Kernel, name: str, language: Language) -> str:
@@ -193,7 +198,9 @@ def _prototype_comment(kernel: Kernel) -> list[str]:
         if argument != "t":
             shape = ", ".join(map(str, kernel.vectors.shape(argument)))
             shapes.append(f"{argument} [{shape}]")
-    return [f"/* {_comment(kernel.doc)} {'; '.join(shapes)}. */"]
+    optional = ", then ".join(kernel.optional)
+    note = f" Pass 0 for what is not asked for: {optional}." if optional else ""
+    return [f"/* {_comment(kernel.doc)} {'; '.join(shapes)}.{note} */"]
 
 
 def _flat(kernel: Kernel, entry: Entry) -> int:

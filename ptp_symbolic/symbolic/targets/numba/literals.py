@@ -1,11 +1,16 @@
-"""Python literals of an emitted module, formatted as the project formats its own code."""
+"""Python text of an emitted module, its lines filled."""
 
 import json
+import re
 import textwrap
 from collections.abc import Iterable
 
 TEXT_WIDTH = 80
 WIDTH = 100
+UNBROKEN = "\0"  # stands for a space at which a line must not end
+LITERAL = re.compile(r'"(?:[^"\\]|\\.)*"')
+TERMS = re.compile(r" (?![-+] |if |else )")  # the spaces that are not before such an operator
+OPERANDS = re.compile(r" (?![-+*/] |if |else )")
 
 
 def repr_text(value: str) -> str:
@@ -14,18 +19,21 @@ def repr_text(value: str) -> str:
 
 
 def long_text(value: str) -> str:
-    """A literal over as many lines as it needs."""
+    """A literal, or several beside each other that are one."""
     lines = textwrap.wrap(value, TEXT_WIDTH, drop_whitespace=False) or [""]
-    return "\n        ".join(repr_text(line) for line in lines)
+    return " ".join(repr_text(line) for line in lines)
 
 
 def named_tuple_text(name: str, items: Iterable[str]) -> str:
-    """The constant `name`, a tuple: on one line, or one item a line."""
+    """The constant `name`, a tuple: on one line, or filled, with every tuple in it on its own."""
     items = list(items)
     line = f"{name} = ({listed(items)})"
     if len(line) <= WIDTH:
         return line
-    return f"{name} = (\n" + "".join(f"    {item},\n" for item in items) + ")"
+    rows = [f"{item}," for item in items]
+    if not items[0].startswith("("):
+        rows = [" ".join(rows)]
+    return "\n".join([f"{name} = (", *(_filled_row(row) for row in rows), ")"])
 
 
 def number_text(value: float | None) -> str:
@@ -42,3 +50,64 @@ def listed(items: Iterable[str]) -> str:
     """Items of a tuple, without its parentheses."""
     found = list(items)
     return f"{found[0]}," if len(found) == 1 else ", ".join(found)
+
+
+def assignment_text(target: str, source: str, width: int, meaning: str = "") -> str:
+    """An assignment in lines of `width`, broken before plus and minus, elsewhere where that does
+    not do; the `meaning` of the target is a comment.
+    """
+    if len(target) + len(source) + 3 <= width:
+        return _commented(f"{target} = {source}", meaning, width)
+    source = f"({source})"
+    for operands in (TERMS, OPERANDS):
+        text = _wrapped(operands.sub(UNBROKEN, f"{target} = {source}"), width, "", "    ")
+        if max(map(len, text.split("\n"))) <= width:
+            return _commented(text, meaning, width)
+    text = _wrapped(OPERANDS.sub(UNBROKEN, source[1:]), width, "    ", "    ")
+    return _commented(f"{target} = (\n{text}", meaning, width)
+
+
+def _commented(text: str, meaning: str, width: int) -> str:
+    """`text` with a comment behind its last line, or above it where there is no room."""
+    if not meaning:
+        return text
+    last = text.rpartition("\n")[2]
+    comment = f"# {meaning}"
+    return f"{text}  {comment}" if len(last) + len(comment) + 2 <= width else f"{comment}\n{text}"
+
+
+def tuple_text(before: str, items: Iterable[str], width: int) -> str:
+    """A tuple of names in lines of `width`, with a text before it."""
+    return _wrapped(f"{before}({listed(items)})", width, "", "    ")
+
+
+def unpacking_text(entries: Iterable[tuple[str, str, int]], width: int) -> list[str]:
+    """Assignments of names from array entries, those of an array together in lines of `width`."""
+    lines: list[tuple[list[str], list[str], str]] = []
+    for name, array, index in entries:
+        entry = f"{array}[{index}]"
+        if lines and lines[-1][2] == array:
+            names, values = [*lines[-1][0], name], [*lines[-1][1], entry]
+            if len(f"{', '.join(names)} = {', '.join(values)}") <= width:
+                lines[-1] = (names, values, array)
+                continue
+        lines.append(([name], [entry], array))
+    return [f"{', '.join(names)} = {', '.join(values)}" for names, values, _ in lines]
+
+
+def _filled_row(row: str) -> str:
+    literals = LITERAL.sub(lambda found: found[0].replace(" ", UNBROKEN), row)
+    further = 5 if row.startswith("(") else 4
+    return _wrapped(literals, WIDTH, 4 * " ", further * " ")
+
+
+def _wrapped(text: str, width: int, first: str, further: str) -> str:
+    lines = textwrap.wrap(
+        text,
+        width,
+        initial_indent=first,
+        subsequent_indent=further,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+    return "\n".join(lines).replace(UNBROKEN, " ")

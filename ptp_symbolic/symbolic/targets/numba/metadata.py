@@ -32,6 +32,25 @@ def metadata_text(equations: Equations, digest: str, opening: str, prepared: int
     return "\n\n".join([opening, _imports(equations), "\n".join(constants)])
 
 
+def search_text(equations: Equations) -> str:
+    """Return what a fit and a diagnosis need to know beside the numbers: constants at the end."""
+    lines = [
+        "# What follows is for fits and diagnoses; no function above uses it.",
+        "# States without influence while these parameters are at their vanishing values.",
+        named_tuple_text("IDLE_STATES", _idle_states(equations)),
+        "# Relations: parameters, rule, strict; `margins` gives what is at least zero.",
+        named_tuple_text("REQUIREMENTS", _requirements(equations)),
+        "# Searching them: name, value at which the effect vanishes (None: any), starts,",
+        "# period, what a frequency is locked to.",
+        named_tuple_text("SEARCH", [_search(p) for p in equations.parameters if _is_searched(p)]),
+        "# Effects: id, axis, parameters, nested members (title, parameters, tied ones),"
+        " keys of the",
+        "# effects that it acts on, title, reference, separating experiment, first member leads.",
+        named_tuple_text("EFFECTS", _effects(equations)),
+    ]
+    return "\n".join(lines)
+
+
 def _signal_lines(equations: Equations) -> list[str]:
     """Names and units of what goes in, what moves and what comes out."""
     return [
@@ -39,8 +58,6 @@ def _signal_lines(equations: Equations) -> list[str]:
         named_tuple_text("STATE_NAMES", (f'"{s}"' for s in equations.state_symbols)),
         named_tuple_text("STATE_UNITS", map(repr_text, _state_units(equations))),
         named_tuple_text("STATE_INITIAL", map(repr, _state_initial(equations))),
-        "# States without influence while these parameters are at their vanishing values.",
-        named_tuple_text("IDLE_STATES", _idle_states(equations)),
         named_tuple_text("INPUT_NAMES", (f'"{i.name}"' for i in equations.inputs)),
         named_tuple_text("INPUT_UNITS", (f'"{i.unit}"' for i in equations.inputs)),
         "# Per input: index of the parameter by which it is late, or -1.",
@@ -72,20 +89,9 @@ def _motion_lines(equations: Equations) -> list[str]:
 
 
 def _parameter_lines(equations: Equations) -> list[str]:
-    """Parameters, what relates them, how they are searched, and the effects that they belong to."""
-    parameters = equations.parameters
     return [
-        "# Relations: parameters, rule, strict; `margins` gives what is at least zero.",
-        named_tuple_text("REQUIREMENTS", _requirements(equations)),
         "# Parameters: name, unit, default, lower and upper bound, meaning.",
-        named_tuple_text("PARAMETERS", map(_parameter, parameters)),
-        "# Searching them: name, value at which the effect vanishes (None: any), starts,",
-        "# period, what a frequency is locked to.",
-        named_tuple_text("SEARCH", [_search(p) for p in parameters if _is_searched(p)]),
-        "# Effects: id, axis, parameters, nested members (title, parameters, tied ones),"
-        " keys of the",
-        "# effects that it acts on, title, reference, separating experiment, first member leads.",
-        named_tuple_text("EFFECTS", _effects(equations)),
+        named_tuple_text("PARAMETERS", map(_parameter, equations.parameters)),
     ]
 
 
@@ -187,7 +193,7 @@ def _effects(equations: Equations) -> list[str]:
         members, acted_on = _members(placed, used), f"({listed(map(repr_text, placed.acts_on))})"
         fields = [f'"{effect.id}"', axis, inner, members, acted_on, *map(long_text, texts)]
         fields += [str(effect.first_leads)]
-        rows.append("(\n" + "".join(f"        {f},\n" for f in fields) + "    )")
+        rows.append(f"({', '.join(fields)})")
     return rows
 
 

@@ -2,17 +2,23 @@
 
 import hashlib
 import textwrap
-
-import sympy as sp
+from collections.abc import Mapping, Sequence
 
 from ptp_symbolic.symbolic.derivation.equations import Equations
-from ptp_symbolic.symbolic.program.kernel import Kernel
+from ptp_symbolic.symbolic.program.kernel import GIVEN, Kernel, Part, used_names
 from ptp_symbolic.symbolic.program.program import Program, program
+from ptp_symbolic.symbolic.program.term_names import vocabulary
 from ptp_symbolic.symbolic.targets.numba.docstring import docstring
-from ptp_symbolic.symbolic.targets.numba.literals import WIDTH
-from ptp_symbolic.symbolic.targets.numba.metadata import metadata_text
+from ptp_symbolic.symbolic.targets.numba.literals import (
+    UNBROKEN,
+    WIDTH,
+    assignment_text,
+    tuple_text,
+    unpacking_text,
+)
+from ptp_symbolic.symbolic.targets.numba.metadata import metadata_text, search_text
 from ptp_symbolic.symbolic.targets.numba.mode_functions import mode_functions_text
-from ptp_symbolic.symbolic.targets.printing import Language, Printer
+from ptp_symbolic.symbolic.targets.printing import Language
 
 NUMBA = Language(
     "numba",
@@ -25,8 +31,24 @@ NUMBA = Language(
         "pi": "math.pi",
     },
 )
+MATRICES = {
+    "fx": "rows and columns as STATE_NAMES",
+    "fu": "rows as STATE_NAMES, columns as INPUT_NAMES",
+    "fp": "rows as STATE_NAMES, columns as PARAMETERS",
+    "gx": "rows as g of guards, columns as STATE_NAMES",
+    "gp": "rows as g of guards, columns as PARAMETERS",
+}
 SEAL = "# END sha256 "
-DOC_WIDTH = WIDTH - 4
+INNER_WIDTH = WIDTH - 4
+ALLOCATES = '@njit(cache=True, error_model="numpy", nogil=True)\n'
+COMPILED = '@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)\n'  # refuses to allocate
+INLINED = COMPILED.replace("_nrt", "forceinline=True, _nrt")
+WRITTEN_BY_PARTS = {
+    "prepare": ["values = constants(p)", "for k in range(PREPARED):\n    c[k] = values[k]"],
+    "mode_derivative": ["prepared_derivative(t, x, u, p, m, constants(p), dx)"],
+}
+OTHER_NAMES = """# What the field calls some of these functions.
+vector_field, events, inverse_dynamics = mode_derivative, guards, equation_error"""
 IMPLIED_MODES = ("m = np.empty(len(MODE_NAMES))", "initial_modes(t, x, u, p, m)")
 
 
@@ -42,11 +64,18 @@ def module_text(equations: Equations) -> str:
 def written(whole: Program) -> str:
     """Return a program as the source of a module."""
     modes = mode_functions_text(whole.has_modes, whole.has_rigid_contacts)
-    body = "\n\n\n".join([*(_function(kernel) for kernel in whole.kernels), modes])
+    words = vocabulary(whole.computed).targets
+    functions = [
+        *map(_part, whole.parts),
+        *(_function(kernel, words) for kernel in whole.kernels),
+        modes,
+        OTHER_NAMES,
+    ]
+    body = "\n\n\n".join(functions)
     digest = hashlib.sha256(body.encode()).hexdigest()[:16]
     opening = docstring(whole.computed, whole.operations)
     head = metadata_text(whole.equations, digest, opening, len(whole.vectors.c))
-    return sealed(f"{head}\n\n\n{body}\n")
+    return sealed(f"{head}\n\n\n{body}\n\n\n{search_text(whole.equations)}\n")
 
 
 def sealed(text: str) -> str:
@@ -55,19 +84,84 @@ def sealed(text: str) -> str:
     return f"{text}{SEAL}{hashlib.sha256(text.encode()).hexdigest()}\n"
 
 
-def _function(kernel: Kernel) -> str:
-    """A compiled function that unpacks what it uses and assigns the lines of a kernel in turn."""
-    shapes = "; ".join(_described(kernel, argument) for argument in kernel.arguments)
-    shapes = textwrap.fill(f"{shapes}.", DOC_WIDTH)
-    rows = [f'"""{kernel.doc}\n\n{shapes}\n"""']
+def _part(part: Part) -> str:
+    """A compiled function that returns what kernels have in common."""
+    rows = [f'"""{part.doc}"""']
+    rows += unpacking_text(part.unpacked, INNER_WIDTH)
+    rows += [assignment_text(name, NUMBA.expression(e), INNER_WIDTH) for name, e in part.lines]
+    rows.append(tuple_text("return ", part.results, INNER_WIDTH))
+    return _compiled(INLINED, part.name, part.arguments, rows)
+
+
+def _function(kernel: Kernel, words: Mapping[str, str]) -> str:
+    """A compiled function that unpacks what it uses and assigns the lines of a kernel in turn, each
+    entry with its name.
+    """
+    rows = [f'"""{kernel.doc}\n\n{_table(kernel, words)}\n"""']
+    if kernel.name in WRITTEN_BY_PARTS and kernel.lines:
+        rows += WRITTEN_BY_PARTS[kernel.name]
+        return _compiled(COMPILED, kernel.name, kernel.arguments, rows)
     rows += IMPLIED_MODES if kernel.finds_modes else ()
-    rows += [f"{name} = {array}[{index}]" for name, array, index in kernel.unpacked]
-    rows += [_assignment(target, expression) for target, expression in kernel.lines]
+    rows += _calls(kernel)
+    rows += unpacking_text(kernel.vectors.unpacked(kernel.own), INNER_WIDTH)
+    for optional, lines in kernel.sections(kernel.own):
+        rows += [f"if len({optional}) == 0:\n    return"] if optional else []
+        for target, expression in lines:
+            source, meaning = NUMBA.expression(expression), words.get(str(target), "")
+            own = "" if source == meaning else meaning
+            rows.append(assignment_text(str(target), source, INNER_WIDTH, own))
     if not kernel.lines:
         rows.append("return")
-    head = '@njit(cache=True, error_model="numpy", nogil=True)\n'
-    head += f"def {kernel.name}({', '.join(kernel.arguments)}):\n"
+    options = ALLOCATES if kernel.finds_modes else COMPILED
+    return _compiled(options, kernel.name, kernel.arguments, rows)
+
+
+def _calls(kernel: Kernel) -> list[str]:
+    """Calls of the parts whose results a kernel uses."""
+    rows: list[str] = []
+    used = used_names(kernel.own)
+    for part in reversed(kernel.parts):
+        call = f"{part.name}({', '.join(part.arguments)})"
+        if part.arguments == ("p",):
+            rows[:0] = [f"c = {call}"] if rows or used & set(part.results) else []
+        elif used & set(part.results):
+            rows.append(f"forces = {call}")
+            places = enumerate(part.results)
+            rows += unpacking_text([(n, "forces", k) for k, n in places if n in used], INNER_WIDTH)
+    return rows
+
+
+def _compiled(options: str, name: str, arguments: Sequence[str], rows: Sequence[str]) -> str:
+    head = f"{options}def {name}({', '.join(arguments)}):\n"
     return head + textwrap.indent("\n".join(rows), "    ")
+
+
+def _table(kernel: Kernel, words: Mapping[str, str]) -> str:
+    """Shapes, units and entries of the arguments of a kernel."""
+    shapes = "; ".join(_described(kernel, argument) for argument in kernel.arguments)
+    said = [f"{shapes}."]
+    for array in kernel.arguments:
+        names = _entries(kernel, array, words)
+        said += [f"{array}: {', '.join(names)}."] if names else []
+    if kernel.optional:
+        named = " or ".join(kernel.optional)
+        said.append(f"Where {named} is empty, it and what follows it is not computed.")
+    lines = [textwrap.fill(each, INNER_WIDTH, subsequent_indent="  ") for each in said]
+    return "\n".join(lines).replace(UNBROKEN, " ")
+
+
+def _entries(kernel: Kernel, array: str, words: Mapping[str, str]) -> list[str]:
+    """Names of the entries of an array that no constant of the module lists."""
+    if array in MATRICES:
+        return [MATRICES[array]]
+    if array == "c" and not kernel.reads(array):
+        return list(kernel.vectors.c)
+    if array == "x" and kernel.vectors.x[-1].startswith(GIVEN):
+        given = [name for name in kernel.vectors.x if name.startswith(GIVEN)]
+        return [f"STATE_NAMES, then {given[0]}", *given[1:]]
+    count = kernel.vectors.shape(array)[0] if array in kernel.vectors.rows else 0
+    names = [words.get(f"{array}[{k}]", "") for k in range(count)]
+    return names if all(names) else []
 
 
 def _described(kernel: Kernel, argument: str) -> str:
@@ -81,30 +175,9 @@ def _described(kernel: Kernel, argument: str) -> str:
         "p": "in the units of PARAMETERS",
         "c": "of prepare",
     }
-    shape = ", ".join(map(str, vectors.shape(argument)))
+    shape = f",{UNBROKEN}".join(map(str, vectors.shape(argument)))
     if argument == "m":
         return f"m [{shape}], see MODE_NAMES"
     if argument in vectors.rows:
         return f"{argument} [{shape}] in {vectors.rows[argument][1]}"
     return f"{argument} [{shape}] {said[argument]}" if argument in said else f"{argument} [{shape}]"
-
-
-def _assignment(target: str, expression: sp.Expr) -> str:
-    source = NUMBA.expression(expression)
-    if len(target) + len(source) + 7 <= WIDTH:
-        return f"{target} = {source}"
-    return "\n".join(_wrapped(target, expression))
-
-
-def _wrapped(target: str, expression: sp.Expr) -> list[str]:
-    """A long sum, one term per line; anything else in parentheses, broken at operators."""
-    if expression.is_Add:
-        terms = [NUMBA.expression(t) for t in expression.as_ordered_terms()]
-        first, *rest = terms
-        signed = [f"- {t[1:].strip()}" if t.startswith("-") else f"+ {t}" for t in rest]
-        return [f"{target} = (", f"    {first}", *(f"    {t}" for t in signed), ")"]
-    if not expression.is_Mul:
-        return [f"{target} = {NUMBA.expression(expression)}"]
-    negative, above, below = Printer(NUMBA).quotient(expression)
-    rows = [f"    {'-' if negative else ''}{above[0]}", *(f"    * {f}" for f in above[1:])]
-    return [f"{target} = (", *rows, *([f"    / {below}"] if below else []), ")"]

@@ -14,13 +14,13 @@ def mode_derivative(t, x, u, p, m, dx):
 # copied from here on
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def initial_modes(t, x, u, p, m):
     """Leave m alone: this model has no modes."""
     return
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def state_derivative(t, x, u, p, dx):
     """Write the time derivative of the state into dx."""
-    mode_derivative(t, x, u, p, x, dx)
+    mode_derivative(t, x, u, p, (), dx)
