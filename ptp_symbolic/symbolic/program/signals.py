@@ -12,7 +12,7 @@ from ptp_symbolic.symbolic.program.kernel import (
     shared_lines,
     variables,
 )
-from ptp_symbolic.symbolic.program.sharing import share
+from ptp_symbolic.symbolic.program.sharing import Line, share
 from ptp_symbolic.symbolic.program.term_names import vocabulary
 
 
@@ -28,10 +28,28 @@ def output_jacobian_kernel(
     equations: Equations, grouped: Equations, solve: dynamics.Solve, vectors: Vectors
 ) -> Kernel:
     """Kernel `output_jacobian`: by the chain rule through accelerations where outputs have any."""
+    doc = "Write the non-zero derivatives of outputs by state and parameter."
+    lines = _output_slopes(equations, grouped, solve, "xp")
+    return kernel("output_jacobian", "t, x, u, p, yx, yp", doc, vectors, lines)
+
+
+def output_input_jacobian_kernel(
+    equations: Equations, grouped: Equations, solve: dynamics.Solve, vectors: Vectors
+) -> Kernel:
+    """Kernel `output_input_jacobian`: inputs act on outputs through accelerations."""
+    doc = "Write the non-zero derivatives of outputs by input."
+    lines = _output_slopes(equations, grouped, solve, "u")
+    return kernel("output_input_jacobian", "t, x, u, p, yu", doc, vectors, lines)
+
+
+def _output_slopes(
+    equations: Equations, grouped: Equations, solve: dynamics.Solve, by: str
+) -> list[Line]:
+    """The lines that compute the derivatives of outputs by the variables of the arrays `by`."""
     accelerated = any(e.has(*solve.accelerations) for _, _, e in equations.outputs)
     outputs, slopes = [], []
     for letter, symbols in variables(equations):
-        for j, variable in enumerate(symbols if letter != "u" else ()):
+        for j, variable in enumerate(symbols if letter in by else ()):
             named = [slope_symbol(a, variable) for a in solve.accelerations]
             if accelerated:
                 values = dynamics.acceleration_derivative(grouped, solve, variable)
@@ -43,10 +61,8 @@ def output_jacobian_kernel(
                     else derivative(equations.written_out(expression), variable)
                 )
                 outputs.append((f"y{letter}[{i}, {j}]", value))
-    doc = "Write the non-zero derivatives of outputs by state and parameter."
     definitions = (*solve.definitions, *solve.chain.lines, *slopes) if accelerated else ()
-    lines = shared_lines(grouped if accelerated else equations, definitions, outputs)
-    return kernel("output_jacobian", "t, x, u, p, yx, yp", doc, vectors, lines)
+    return shared_lines(grouped if accelerated else equations, definitions, outputs)
 
 
 def energy_kernel(equations: Equations, vectors: Vectors) -> Kernel:
