@@ -2,7 +2,6 @@
 
 #include "instance.c"
 
-#define FMI2_FUNCTION_PREFIX
 #include "fmi2Functions.h"
 
 static fmi2Status told(Instance *a, int done)
@@ -297,7 +296,7 @@ fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real indicators[], size_t
         return told(a, fail(a, "There are %d event indicators", INDICATORS));
     if (!refresh(a))
         return told(a, 0);
-    fill_indicators(a, a->now.t, a->now.x);
+    show_indicators(a);
     memcpy(indicators, a->z, n * sizeof *indicators);
     return fmi2OK;
 }

@@ -2,7 +2,6 @@
 
 #include "instance.c"
 
-#define FMI3_FUNCTION_PREFIX
 #include "fmi3Functions.h"
 
 static fmi3Status told(Instance *a, int done)
@@ -471,7 +470,7 @@ fmi3Status fmi3GetEventIndicators(fmi3Instance instance, fmi3Float64 indicators[
         return told(a, fail(a, "There are %d event indicators", INDICATORS));
     if (!refresh(a))
         return told(a, 0);
-    fill_indicators(a, a->now.t, a->now.x);
+    show_indicators(a);
     memcpy(indicators, a->z, n * sizeof *indicators);
     return fmi3OK;
 }

@@ -36,6 +36,9 @@ static const double LARGEST_STEP = 0.1;     /* s */
 static const double SHORTEST_STEP = 1e-11;  /* s */
 static const double TIME_RESOLUTION = 1e-12; /* s */
 static const double LANDING = 2e-12;        /* s; how far past an event a step may end */
+/* How far past an event an indicator is zero, in its unit: an importer that finds it to be exactly
+   zero, or stops a rounding error before, has reached the event, and none begins there. */
+static const double PAST_EVENT = 1e-10;
 static const double INSTANT_STEP = 1e-10;   /* s; events that are closer are at one instant */
 static const double NODES[STAGES] = {
     0.0, 0.6358126895828704, 0.4095798393397535, 0.9769306725060716, 0.4288403609558664,
@@ -111,6 +114,12 @@ static int fail(Instance *a, const char *form, ...)
         if (*c == '%') /* messages are formats to some loggers */
             *c = ' ';
     return 0;
+}
+
+/* Whether a value reference belongs to the group that begins at `first` and ends before `next`. */
+static int within(unsigned reference, unsigned first, unsigned next)
+{
+    return reference >= first && reference < next;
 }
 
 static void restore_start(Instance *a)
@@ -201,6 +210,14 @@ static double fill_indicators(Instance *a, double t, const double *x)
     return worst;
 }
 
+/* Write the event indicators into a->z: negative until a mode, or the domain, has ended. */
+static void show_indicators(Instance *a)
+{
+    fill_indicators(a, a->now.t, a->now.x);
+    for (int e = 0; e < INDICATORS; e++)
+        a->z[e] -= PAST_EVENT;
+}
+
 static int is_inside(Instance *a)
 {
     for (int limit = 0; limit < LIMITS; limit++)
@@ -276,7 +293,7 @@ static int is_number(const double *values, int count)
 static int set_number(Instance *a, unsigned reference, double value)
 {
     Moment *now = &a->now;
-    if (reference >= AT_PARAMETERS && reference < AT_INDICATORS) {
+    if (within(reference, AT_PARAMETERS, AT_INDICATORS)) {
         const unsigned i = reference - AT_PARAMETERS;
         if (!(value >= LOWEST[i] && value <= HIGHEST[i]))
             return fail(a, "Parameter '%s': %.9g %s lies outside its bounds [%g, %g]",
@@ -291,9 +308,9 @@ static int set_number(Instance *a, unsigned reference, double value)
     }
     if (!is_number(&value, 1))
         return fail(a, "Value reference %u: %g is not a finite number", reference, value);
-    if (reference >= AT_INPUTS && reference < AT_OUTPUTS)
+    if (within(reference, AT_INPUTS, AT_OUTPUTS))
         now->u[reference - AT_INPUTS] = value;
-    else if (reference >= AT_STATES && reference < AT_DERIVATIVES)
+    else if (within(reference, AT_STATES, AT_DERIVATIVES))
         now->x[reference - AT_STATES] = value;
     else
         return fail(a, "Value reference %u is no input, state or parameter", reference);
@@ -316,14 +333,14 @@ static int get_numbers(Instance *a, const unsigned *references, size_t count, do
         return 0;
     for (size_t k = 0; k < count; k++) {
         const unsigned r = references[k];
-        if (r >= AT_DERIVATIVES && r < AT_INPUTS && !(have & 1)) {
+        if (within(r, AT_DERIVATIVES, AT_INPUTS) && !(have & 1)) {
             fill_derivatives(a);
             have |= 1;
-        } else if (r >= AT_OUTPUTS && r < AT_PARAMETERS && !(have & 2)) {
+        } else if (within(r, AT_OUTPUTS, AT_PARAMETERS) && !(have & 2)) {
             model_outputs(now->t, now->x, now->u, now->p, a->y);
             have |= 2;
-        } else if (r >= AT_INDICATORS && r < AT_MODES && !(have & 4)) {
-            fill_indicators(a, now->t, now->x);
+        } else if (within(r, AT_INDICATORS, AT_MODES) && !(have & 4)) {
+            show_indicators(a);
             have |= 4;
         }
         if (r == AT_TIME)
@@ -351,7 +368,7 @@ static int get_mode(Instance *a, unsigned reference, int *value)
     if (!refresh(a))
         return 0;
 #if MODES > 0
-    if (reference >= AT_MODES && reference < AT_END) {
+    if (within(reference, AT_MODES, AT_END)) {
         *value = (int)a->now.machine.modes[reference - AT_MODES];
         return 1;
     }
@@ -381,23 +398,23 @@ static void fill_jacobian(Instance *a)
 static int partial(Instance *a, unsigned unknown, unsigned known, double *value)
 {
     const double *by_x, *by_u, *by_p;
-    if (unknown >= AT_DERIVATIVES && unknown < AT_INPUTS) {
+    if (within(unknown, AT_DERIVATIVES, AT_INPUTS)) {
         const unsigned row = unknown - AT_DERIVATIVES;
         by_x = a->fx + row * STATES, by_u = a->fu + row * INPUTS, by_p = a->fp + row * PARAMETERS;
-    } else if (unknown >= AT_OUTPUTS && unknown < AT_PARAMETERS) {
+    } else if (within(unknown, AT_OUTPUTS, AT_PARAMETERS)) {
         const unsigned row = unknown - AT_OUTPUTS;
         by_x = a->yx + row * STATES, by_u = a->yu + row * INPUTS, by_p = a->yp + row * PARAMETERS;
-    } else if (unknown >= AT_STATES && unknown < AT_DERIVATIVES) {
+    } else if (within(unknown, AT_STATES, AT_DERIVATIVES)) {
         *value = unknown == known ? 1.0 : 0.0;
         return 1;
     } else {
         return fail(a, "Value reference %u is no derivative or output", unknown);
     }
-    if (known >= AT_STATES && known < AT_DERIVATIVES)
+    if (within(known, AT_STATES, AT_DERIVATIVES))
         *value = by_x[known - AT_STATES];
-    else if (known >= AT_INPUTS && known < AT_OUTPUTS)
+    else if (within(known, AT_INPUTS, AT_OUTPUTS))
         *value = by_u[known - AT_INPUTS];
-    else if (known >= AT_PARAMETERS && known < AT_INDICATORS)
+    else if (within(known, AT_PARAMETERS, AT_INDICATORS))
         *value = by_p[known - AT_PARAMETERS];
     else
         return fail(a, "Value reference %u is no state, input or parameter", known);
