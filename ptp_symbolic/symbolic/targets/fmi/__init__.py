@@ -87,9 +87,7 @@ FMU_2, FMU_3 = Fmu("2.0"), Fmu("3.0")
 
 def _input_slopes(program: Program):  # type: ignore[no-untyped-def]
     solve = dynamics.solve_accelerations(program.computed)
-    return output_input_jacobian_kernel(
-        program.equations, program.computed, solve, program.vectors
-    )
+    return output_input_jacobian_kernel(program.equations, program.computed, solve, program.vectors)
 
 
 def _facts(program: Program, found: Variables) -> str:

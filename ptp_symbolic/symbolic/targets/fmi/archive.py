@@ -57,9 +57,7 @@ def missing_systems() -> list[str]:
     return [system.name for system in SYSTEMS if not _compiler(system)]
 
 
-def archive(
-    files: Mapping[str, str], name: str, source: str, built: Sequence[System]
-) -> bytes:
+def archive(files: Mapping[str, str], name: str, source: str, built: Sequence[System]) -> bytes:
     """The archive of `files` with binaries that are built from ``sources/<source>``.
 
     Raises InputError where a compiler fails.
