@@ -12,6 +12,7 @@ from importlib import resources
 import sympy as sp
 
 from ptp_symbolic.symbolic.program import dynamics
+from ptp_symbolic.symbolic.program.kernel import Kernel
 from ptp_symbolic.symbolic.program.program import Program
 from ptp_symbolic.symbolic.program.signals import output_input_jacobian_kernel
 from ptp_symbolic.symbolic.targets.c99 import header, literals, source
@@ -85,7 +86,8 @@ class Fmu:
 FMU_2, FMU_3 = Fmu("2.0"), Fmu("3.0")
 
 
-def _input_slopes(program: Program):  # type: ignore[no-untyped-def]
+def _input_slopes(program: Program) -> Kernel:
+    """The derivatives of outputs by inputs, which no other target needs."""
     solve = dynamics.solve_accelerations(program.computed)
     return output_input_jacobian_kernel(program.equations, program.computed, solve, program.vectors)
 

@@ -1,6 +1,5 @@
 """The variables of an FMU: names, units and bounds, in the order of their value references."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from ptp_symbolic.symbolic.derivation.equations import Equations
@@ -78,7 +77,7 @@ def variables(program: Program) -> Variables:
     at_parameters = at_outputs + len(equations.outputs)
     at_indicators = at_parameters + len(equations.parameters)
     needs_field, needs_outputs = _dependencies(program, at_inputs)
-    same = {str(e): i for i, (n, _, e) in enumerate(equations.outputs) if str(e) in names}
+    same = {str(e) for _, _, e in equations.outputs}
     units, meanings = state_units(equations), _meanings(equations)
     initial = {state.name: float(state.initial) for state in equations.extra_states}
     states = tuple(
@@ -247,8 +246,3 @@ def per_second(unit: str) -> str:
         return known[unit]
     above, stroke, below = unit.partition("/")
     return f"{above}/({below.strip('()')} s)" if stroke else f"{unit}/s"
-
-
-def names_of(found: Iterable[Variable]) -> list[str]:
-    """Names of variables."""
-    return [variable.name for variable in found]
