@@ -11,7 +11,7 @@ from ptp_symbolic.models.emission import possible_equations
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.symbolic.program.program import program
 from ptp_symbolic.symbolic.targets import TARGETS
-from ptp_symbolic.symbolic.targets.target import Target
+from ptp_symbolic.symbolic.targets.target import Packed, Target
 
 
 def target_named(name: str) -> Target:
@@ -24,9 +24,9 @@ def target_named(name: str) -> Target:
 
 @dataclass(frozen=True)
 class Exported:
-    """Texts of the `files` of a platform for a target, by name, and what to know of them."""
+    """Contents of the `files` of a platform for a target, by name, and what to know of them."""
 
-    files: Mapping[str, str]
+    files: Mapping[str, str | bytes]
     remarks: tuple[str, ...]
 
 
@@ -41,7 +41,11 @@ def exported(platform: Platform, target: str) -> Exported:
     why = own.refuse(whole)
     if why is not None:
         raise InputError(f"Target '{target}' cannot express platform '{platform.name}': {why}")
-    return Exported(own.files(whole, identifier(platform.name)), tuple(own.remarks(whole)))
+    name = identifier(platform.name)
+    files: Mapping[str, str | bytes] = own.files(whole, name)
+    if isinstance(own, Packed):
+        files = own.pack(own.files(whole, name), name)
+    return Exported(files, tuple(own.remarks(whole)))
 
 
 def export(platform: Platform, target: str, folder: Path) -> tuple[list[Path], tuple[str, ...]]:

@@ -13,7 +13,7 @@ from ptp_symbolic.symbolic.program.kernel import (
     shared_lines,
     variables,
 )
-from ptp_symbolic.symbolic.program.sharing import share
+from ptp_symbolic.symbolic.program.sharing import Line, share
 from ptp_symbolic.symbolic.program.term_names import vocabulary
 from ptp_symbolic.symbolic.symbols import ZERO
 
@@ -30,8 +30,26 @@ def output_jacobian_kernel(
     equations: Equations, grouped: Equations, solve: dynamics.Solve, vectors: Vectors
 ) -> Kernel:
     """Kernel `output_jacobian`: by the chain rule through accelerations where outputs have any."""
+    doc = "Write the non-zero derivatives of outputs by state and parameter."
+    lines = _output_slopes(equations, grouped, solve, "xp")
+    return kernel("output_jacobian", "t, x, u, p, yx, yp", doc, vectors, lines)
+
+
+def output_input_jacobian_kernel(
+    equations: Equations, grouped: Equations, solve: dynamics.Solve, vectors: Vectors
+) -> Kernel:
+    """Kernel `output_input_jacobian`: inputs act on outputs through accelerations."""
+    doc = "Write the non-zero derivatives of outputs by input."
+    lines = _output_slopes(equations, grouped, solve, "u")
+    return kernel("output_input_jacobian", "t, x, u, p, yu", doc, vectors, lines)
+
+
+def _output_slopes(
+    equations: Equations, grouped: Equations, solve: dynamics.Solve, by: str
+) -> list[Line]:
+    """The lines that compute the derivatives of outputs by the variables of the arrays `by`."""
     accelerated = any(e.has(*solve.accelerations) for _, _, e in equations.outputs)
-    columns = [(letter, own) for letter, own in variables(equations) if letter != "u"]
+    columns = [(letter, own) for letter, own in variables(equations) if letter in by]
     every = [symbol for _, own in columns for symbol in own]
     slopes = dynamics.acceleration_slopes(grouped, solve, every) if accelerated else None
     outputs = [
@@ -45,10 +63,8 @@ def output_jacobian_kernel(
         for j, variable in enumerate(own)
         for i, (_, _, expression) in enumerate(equations.outputs)
     ]
-    doc = "Write the non-zero derivatives of outputs by state and parameter."
     definitions = (*solve.definitions, *slopes.lines) if slopes else ()
-    lines = shared_lines(grouped if slopes else equations, definitions, outputs)
-    return kernel("output_jacobian", "t, x, u, p, yx, yp", doc, vectors, lines)
+    return shared_lines(grouped if slopes else equations, definitions, outputs)
 
 
 def energies(equations: Equations, solve: dynamics.Solve) -> list[sp.Expr]:

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Iterable, Mapping
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from ptp_symbolic.symbolic.program.program import Program
 
@@ -26,6 +26,14 @@ class Target(Protocol):
 
     def files(self, program: Program, name: str) -> Mapping[str, str]:
         """Texts of its files by name, for a program called `name`."""
+
+
+@runtime_checkable
+class Packed(Protocol):
+    """What a target has too whose files are packed into others before they are written."""
+
+    def pack(self, files: Mapping[str, str], name: str) -> Mapping[str, bytes]:
+        """Contents of the packed files by name, from the texts of a program called `name`."""
 
 
 def effects_of(program: Program) -> list[str]:

@@ -102,8 +102,11 @@ def header(program: Program, name: str, language: Language) -> str:
     return "\n".join(_filled(text))
 
 
-def source(program: Program, name: str, language: Language) -> str:
-    """The source: tables, kernels, and what all models have in common."""
+def source(program: Program, name: str, language: Language, events: bool = False) -> str:
+    """The source: tables, kernels, and what all models have in common; with `events` also how
+    modes end and settle at one instant.
+    """
+    events = program.has_modes and (events or program.has_rigid_contacts)
     equations = program.equations
     values = [_number(p.default, language) for p in equations.parameters]
     states = list(equations.state_symbols)
@@ -122,6 +125,7 @@ def source(program: Program, name: str, language: Language) -> str:
         f"#define SMALLEST {'1e-30f' if language.suffix else '1e-60'}",
         *(f"#define {word} {number}" for word, number in sizes.items()),
         f"#define RIGID {int(program.has_rigid_contacts)}",
+        f"#define EVENTS {int(events)}",
         "",
         *_names(f"{name}_state_names", map(str, states)),
         *_names(f"{name}_input_names", (i.name for i in equations.inputs)),
@@ -131,7 +135,7 @@ def source(program: Program, name: str, language: Language) -> str:
         *_array(f"const {name}_real {name}_parameters", values),
         *_array(f"const {name}_real {name}_initial_state", initial),
         "",
-        *_layout(program),
+        *_layout(program, events),
     ]
     files = resources.files("ptp_symbolic.symbolic.targets.c99")
     if program.has_modes:
@@ -231,13 +235,13 @@ def _sizes(program: Program) -> dict[str, int]:
     }
 
 
-def _layout(program: Program) -> list[str]:
+def _layout(program: Program, events: bool) -> list[str]:
     """Where frictions, contacts, samplers and limits act among the states."""
     equations = program.equations
     states = list(equations.state_symbols)
     layout = program.layout
     lines: list[str] = []
-    if equations.frictions or program.has_rigid_contacts:
+    if equations.frictions or events:
         rates = ", ".join(map(str, layout.friction_rates or (-1,)))
         lines.append(f"static const int FRICTION_RATES[] = {{{rates}}};")
         lines += [
@@ -337,7 +341,12 @@ def _tables(program: Program) -> dict[str, list[str]]:
 
 
 def _names(array: str, names: Iterable[str]) -> list[str]:
-    return _array(f"const char *const {array}", [f'"{_escaped(name)}"' for name in names])
+    return _array(f"const char *const {array}", literals(names))
+
+
+def literals(texts: Iterable[str]) -> list[str]:
+    """Texts as string literals, whatever they hold."""
+    return [f'"{_escaped(text)}"' for text in texts]
 
 
 def _array(head: str, items: Sequence[str]) -> list[str]:

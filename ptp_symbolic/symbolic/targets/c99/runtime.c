@@ -11,11 +11,13 @@ enum { MOST_SWEEPS = 30, MOST_ROUNDS = 20 };
 static const real GAMMA = REAL(0.29289321881345254); /* 1 - sqrt(1/2) */
 static const real LARGEST_STATE = REAL(1e12);
 static const real SMALLEST_STATE = SMALLEST;         /* smaller states are set to zero */
-#if RIGID
+#if EVENTS
 #if FRICTIONS > 0
 static const real REVERSAL_DEAD_BAND = REAL(1e-13);  /* rad/s, or m/s */
 #endif
 static const real PUSH_DEAD_BAND = REAL(1e-12);      /* N m, or N */
+#endif
+#if RIGID
 static const real APPROACH_DEAD_BAND = REAL(1e-12);  /* rad/s */
 static const real RESTING_SPEED = REAL(1e-5);        /* rad/s; slower faces stay together */
 #endif
@@ -254,9 +256,7 @@ static int mode_finding_step(model_machine *s, real t, real h, const real *x, co
 }
 #endif
 
-#if RIGID
-static void fill_guards(model_machine *s, real t, const real *x, const real *u, const real *p);
-
+#if EVENTS
 /* How far the mode of an element has ended: not above zero while it lasts. */
 static real violation(const model_machine *s, int element, const real *x)
 {
@@ -290,6 +290,7 @@ static real largest_violation(const model_machine *s, const real *x)
     return worst;
 }
 
+#if RIGID
 /* Acceleration of a gear towards its face, alone (active 0) or with the joint (1). */
 static real towards_face(model_machine *s, int c, real active, real t, const real *x,
                          const real *u, const real *p)
@@ -307,10 +308,12 @@ static real towards_face(model_machine *s, int c, real active, real t, const rea
         m[i] = kept[i];
     return side * s->k2[CONTACT_RATES[c][0]];
 }
+#endif
 
 static void fill_guards(model_machine *s, real t, const real *x, const real *u, const real *p)
 {
     model_guards(t, x, u, p, s->modes, s->guards);
+#if RIGID
     for (int c = 0; c < CONTACTS; c++)
         if (s->pressed[c]) {
             real *g = s->guards + 3 * FRICTIONS + 4 * c;
@@ -320,6 +323,7 @@ static void fill_guards(model_machine *s, real t, const real *x, const real *u, 
             g[2] = side * towards_face(s, c, REAL(1.0), t, x, u, p);
             g[3] = g[2];
         }
+#endif
 }
 
 /* Move every violated contact to its next mode. */
@@ -337,12 +341,16 @@ static void switch_contacts(model_machine *s)
         }
         const real push = m[0] * (m[0] > REAL(0.0) ? g[2] : g[3]);
         const int apart = g[1] - m[0] * g[0] > REAL(0.0);
+#if RIGID
         if (s->pressed[c]) {
             if (push > REAL(0.0) || apart) {
                 s->pressed[c] = 0;
                 m[1] = push > REAL(0.0) ? REAL(1.0) : REAL(0.0);
             }
-        } else if (m[1] > REAL(0.0)) {
+            continue;
+        }
+#endif
+        if (m[1] > REAL(0.0)) {
             if (push < REAL(0.0))
                 m[1] = REAL(0.0);
         } else if (apart) {
@@ -353,6 +361,7 @@ static void switch_contacts(model_machine *s)
     }
 }
 
+#if RIGID
 /* One impact by Newton's law of restitution. */
 static void strike(model_machine *s, int c, real t, real *x, const real *u, const real *p)
 {
@@ -413,6 +422,8 @@ static void press(model_machine *s, real t, real *x, const real *u, const real *
     }
 }
 
+#endif
+
 /* Find consistent modes and rates at one instant; 0 on chattering. */
 static int settle(model_machine *s, real t, real *x, const real *u, const real *p)
 {
@@ -423,20 +434,24 @@ static int settle(model_machine *s, real t, real *x, const real *u, const real *
                 const int rate = FRICTION_RATES[f];
                 x[rate] = REAL(0.0);
                 m[f] = REAL(0.0);
+#if RIGID
                 for (int c = 0; c < CONTACTS; c++) {
                     const int gear = CONTACT_RATES[c][0], joint = CONTACT_RATES[c][1];
                     const int joined = m[FRICTIONS + 2 * c + 1] > REAL(0.0);
                     if (CONTACT_RATES[c][2] != 0 && joined && (rate == gear || rate == joint))
                         x[gear] = x[joint] = REAL(0.0);
                 }
+#endif
                 for (int a = 0; a < STATES; a++)
                     if (ZERO_AT_REST[a] == f)
                         x[a] = REAL(0.0);
             }
         fill_guards(s, t, x, u, p);
         switch_contacts(s);
+#if RIGID
         strike_faces(s, t, x, u, p);
         press(s, t, x, u, p);
+#endif
         fill_guards(s, t, x, u, p);
         for (int f = 0; f < FRICTIONS; f++)
             if (m[f] == REAL(0.0)) {
@@ -452,6 +467,7 @@ static int settle(model_machine *s, real t, real *x, const real *u, const real *
     return 0;
 }
 
+#if RIGID
 /* Impacts of faces that have closed; faces that approach before the gap has opened meet without
    restitution. */
 static int land(model_machine *s, real t, real *x, const real *u, const real *p)
@@ -465,13 +481,12 @@ static int land(model_machine *s, real t, real *x, const real *u, const real *p)
 }
 #endif
 #endif
+#endif
 
-int model_begin(model_machine *s, real t, real *x, const real *u, const real *p)
-{
-    model_prepare(p, s->prepared);
-    for (int i = 0; i < STATES * STATES; i++)
-        s->by_state[i] = REAL(0.0);
 #if SAMPLERS > 0
+/* Plan the first instant of every sampler; a status. */
+static int plan_samples(model_machine *s, real t, const real *x, const real *u, const real *p)
+{
     model_sample(t, x, u, p, s->modes, s->sampled);
     for (int i = 0; i < SAMPLERS; i++) {
         const double period = (double)s->sampled[3 * i], offset = (double)s->sampled[3 * i + 1];
@@ -481,6 +496,18 @@ int model_begin(model_machine *s, real t, real *x, const real *u, const real *p)
         s->due[i] = offset + s->count[i] * period;
         s->armed[i] = 0;
     }
+    return MODEL_DONE;
+}
+#endif
+
+int model_begin(model_machine *s, real t, real *x, const real *u, const real *p)
+{
+    model_prepare(p, s->prepared);
+    for (int i = 0; i < STATES * STATES; i++)
+        s->by_state[i] = REAL(0.0);
+#if SAMPLERS > 0
+    if (plan_samples(s, t, x, u, p) != MODEL_DONE)
+        return MODEL_NO_PERIOD;
 #endif
 #if RIGID
     for (int c = 0; c < CONTACTS; c++)
