@@ -6,12 +6,15 @@ import textwrap
 import sympy as sp
 
 from ptp_symbolic.symbolic.derivation.equations import Equations
-from ptp_symbolic.symbolic.program.kernel import Kernel
+from ptp_symbolic.symbolic.program.kernel import Entry, Kernel, used_names
 from ptp_symbolic.symbolic.program.program import Program, program
 from ptp_symbolic.symbolic.targets.numba.docstring import docstring
 from ptp_symbolic.symbolic.targets.numba.literals import WIDTH
 from ptp_symbolic.symbolic.targets.numba.metadata import metadata_text
-from ptp_symbolic.symbolic.targets.numba.mode_functions import mode_functions_text
+from ptp_symbolic.symbolic.targets.numba.mode_functions import (
+    lane_functions_text,
+    mode_functions_text,
+)
 from ptp_symbolic.symbolic.targets.printing import Language, Printer
 
 NUMBA = Language(
@@ -24,6 +27,11 @@ NUMBA = Language(
         "NearestCount": "({1} * math.floor(({0}) / {1} + 0.5))",
         "pi": "math.pi",
     },
+)
+LANES = 16  # states side by side: fewer are unrolled before LLVM looks for vectors
+IN_LANES = Language(
+    "numba, several states at once",
+    {**NUMBA.operations, "sin": "lane_sin({0})", "cos": "lane_cos({0})"},
 )
 SEAL = "# END sha256 "
 DOC_WIDTH = WIDTH - 4
@@ -44,6 +52,9 @@ def written(whole: Program) -> str:
     modes = mode_functions_text(whole.has_modes, whole.has_rigid_contacts)
     body = "\n\n\n".join([*(_function(kernel) for kernel in whole.kernels), modes])
     digest = hashlib.sha256(body.encode()).hexdigest()[:16]
+    in_lanes = whole.kernel("prepared_derivative")
+    if in_lanes is not None and not whole.has_modes and whole.kernel("sample") is None:
+        body = "\n\n\n".join([body, lane_functions_text(), _lane_function(in_lanes)])
     opening = docstring(whole.computed, whole.operations)
     head = metadata_text(whole.equations, digest, opening, len(whole.vectors.c))
     return sealed(f"{head}\n\n\n{body}\n")
@@ -70,6 +81,36 @@ def _function(kernel: Kernel) -> str:
     return head + textwrap.indent("\n".join(rows), "    ")
 
 
+def _lane_function(kernel: Kernel) -> str:
+    """The function of LANES states side by side, all in one array: LLVM sees that what is written
+    is not what is read.
+    """
+    first, rows = {"t": 0}, 1
+    for array in (*"xupc", "dx"):
+        first[array] = rows
+        rows += kernel.vectors.shape(array)[0]
+    places = [(name, array, index) for name, array, index in kernel.unpacked]
+    if "t" in used_names(kernel.lines):
+        places.insert(0, ("t", "t", 0))
+    lines = [f"{name} = {_lane(first[array] + index)}" for name, array, index in places]
+    for assignment, (name, expression) in zip(kernel.body, kernel.lines, strict=True):
+        target = assignment.target
+        place = _lane(first["dx"] + target.indices[0]) if isinstance(target, Entry) else name
+        lines.append(_assignment(place, expression, IN_LANES, WIDTH - 4))
+    doc = (
+        f'"""Write the time derivatives of {LANES} states side by side into w.\n\n'
+        f"w [{rows} * {LANES}]: rows of {LANES} numbers, t, then x, u, p, c of prepare and dx.\n"
+        '"""'
+    )
+    loop = f"for lane in range({LANES}):\n" + textwrap.indent("\n".join(lines), "    ")
+    head = f'LANES = {LANES}\n\n\n@njit(cache=True, error_model="numpy", nogil=True)\n'
+    return head + "def lane_derivative(w):\n" + textwrap.indent(f"{doc}\n{loop}", "    ")
+
+
+def _lane(row: int) -> str:
+    return f"w[{row * LANES} + lane]" if row else "w[lane]"
+
+
 def _described(kernel: Kernel, argument: str) -> str:
     """Shape and unit of an argument of a kernel."""
     if argument == "t":
@@ -89,22 +130,24 @@ def _described(kernel: Kernel, argument: str) -> str:
     return f"{argument} [{shape}] {said[argument]}" if argument in said else f"{argument} [{shape}]"
 
 
-def _assignment(target: str, expression: sp.Expr) -> str:
-    source = NUMBA.expression(expression)
-    if len(target) + len(source) + 7 <= WIDTH:
+def _assignment(
+    target: str, expression: sp.Expr, language: Language = NUMBA, width: int = WIDTH
+) -> str:
+    source = language.expression(expression)
+    if len(target) + len(source) + 7 <= width:
         return f"{target} = {source}"
-    return "\n".join(_wrapped(target, expression))
+    return "\n".join(_wrapped(target, expression, language))
 
 
-def _wrapped(target: str, expression: sp.Expr) -> list[str]:
+def _wrapped(target: str, expression: sp.Expr, language: Language) -> list[str]:
     """A long sum, one term per line; anything else in parentheses, broken at operators."""
     if expression.is_Add:
-        terms = [NUMBA.expression(t) for t in expression.as_ordered_terms()]
+        terms = [language.expression(t) for t in expression.as_ordered_terms()]
         first, *rest = terms
         signed = [f"- {t[1:].strip()}" if t.startswith("-") else f"+ {t}" for t in rest]
         return [f"{target} = (", f"    {first}", *(f"    {t}" for t in signed), ")"]
     if not expression.is_Mul:
-        return [f"{target} = {NUMBA.expression(expression)}"]
-    negative, above, below = Printer(NUMBA).quotient(expression)
+        return [f"{target} = {language.expression(expression)}"]
+    negative, above, below = Printer(language).quotient(expression)
     rows = [f"    {'-' if negative else ''}{above[0]}", *(f"    * {f}" for f in above[1:])]
     return [f"{target} = (", *rows, *([f"    / {below}"] if below else []), ")"]
