@@ -7,9 +7,11 @@ jump, and takes the next trajectory when it has reached the end. Lanes do not ex
 trajectory has the same bits in any lane and beside any others.
 """
 
+import math
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit, types
@@ -18,6 +20,7 @@ from scipy.integrate import DOP853
 
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.integration import EXPLICIT, Accuracy, default_method
+from ptp_symbolic.numeric.simulation.kernels.records import KERNEL
 from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
 
 FloatArray = NDArray[np.float64]
@@ -26,7 +29,10 @@ IntArray = NDArray[np.int64]
 STAGES = 12
 NEW, EXTRA = 12, 13  # rows of the slopes: at the end of the step, then three for dense output
 ALL = 16
+ERROR_5, ERROR_3, DENSE = 16, 17, 18  # rows of the tableau
 BLOCK = 4  # slopes that are added at once
+TINY = 1e-300
+MOST_SHRINK, MOST_GROWTH = 0.2, 6.0  # of a step
 LEAST_ERROR = 1e-8  # scaled; the step grows no further below
 SHORTEST_STEP = 1e-11  # s
 LARGEST_STATE = 1e12
@@ -66,107 +72,401 @@ def tableau() -> tuple[FloatArray, IntArray, IntArray, FloatArray]:
     rows[:STAGES, :STAGES] = DOP853.A
     rows[NEW, :STAGES] = DOP853.B
     rows[EXTRA:ALL] = DOP853.A_EXTRA
-    rows[16, : STAGES + 1], rows[17, : STAGES + 1] = DOP853.E5, DOP853.E3
-    rows[18:] = DOP853.D
+    rows[ERROR_5, : STAGES + 1], rows[ERROR_3, : STAGES + 1] = DOP853.E5, DOP853.E3
+    rows[DENSE:] = DOP853.D
     nodes = np.concatenate([DOP853.C, [1.0], DOP853.C_EXTRA])
     return *_blocks(rows), nodes
 
 
 _V, _I = types.float64[::1], types.int64[::1]
-_M, _T, _C = types.float64[:, ::1], types.int64[:, ::1], types.float64[:, :, ::1]
+_M, _T = types.float64[:, ::1], types.int64[:, ::1]
 _IN_PLACE = types.FunctionType(types.void(_V))
 _PREPARE = types.FunctionType(types.void(_V, _V))
-_OPTIONS = {"nogil": True, "error_model": "numpy"}
-_inlined = njit(forceinline=True, **_OPTIONS)
+_RUNS = (_M, _M, _I, _I, _V, _V, _V, _I, types.float64[:, :, ::1], _I, types.boolean[::1])
+_C = types.float64[:, :, ::1]
+_LANES = (*[_V] * 4, _M, _M, _M, *[_V] * 6, _M, *[_V] * 5, _M, _C, _C, _M, _M, _V)
+_LANES += (*[_I] * 6, _T, _V, _V)
+_kernel = njit(**KERNEL)
+_inlined = njit(forceinline=True, **KERNEL)  # per lane: records are long arguments
 
 
-@_inlined
-def _weigh(row, weights, stages, counts, k, width, total):
+class Lanes(NamedTuple):
+    """What stands side by side: rows of L numbers, one per trajectory, in flat arrays.
+
+    w: what the emitted derivative reads and writes, and in it t, state, u, constants, dx; k
+    [16, n]: slopes; x, new, total, error5, length, atol [n]: states at both ends of the step,
+    weighted slopes, step length in s, tolerance; dense [4, n]; time, plan, h, norm, factor: time,
+    planned and present step in s, scaled error and what it makes of the step; base [nu], cubic
+    [4, nu]: pieces of the inputs; wave [4, r nu], active, angle [r nu]: their sines; who, stop,
+    output, first, fresh, ends: trajectory or -1, indices of the next stop, output time and signal,
+    whether the trajectory is new, whether the step ends at a stop; cursor [nu]: pieces found last;
+    given, ready: a parameter vector and what is prepared of it.
+    """
+
+    w: Any
+    t: Any
+    state: Any
+    dx: Any
+    u: Any
+    constants: Any
+    k: Any
+    x: Any
+    new: Any
+    total: Any
+    error5: Any
+    length: Any
+    atol: Any
+    dense: Any
+    time: Any
+    plan: Any
+    h: Any
+    norm: Any
+    factor: Any
+    base: Any
+    cubic: Any
+    wave: Any
+    active: Any
+    angle: Any
+    angles: Any
+    who: Any
+    stop: Any
+    output: Any
+    first: Any
+    fresh: Any
+    ends: Any
+    cursor: Any
+    given: Any
+    ready: Any
+
+
+class Runs(NamedTuple):
+    """The trajectories: parameters p [b, np], start [b, n], kind of drive [b], which are `todo`,
+    times [k] in s, limits [3]: rtol, largest step in s, most steps; stops in s of every
+    kind of drive, where these begin; states out [b, k, n], steps [b], whether the end was reached.
+    """
+
+    p: Any
+    start: Any
+    drive: Any
+    todo: Any
+    times: Any
+    limits: Any
+    stops: Any
+    stop_offsets: Any
+    out: Any
+    steps: Any
+    done: Any
+
+
+def new_lanes(
+    lanes: int, nu: int, parameters: int, prepared: int, waves: int, atol: FloatArray
+) -> Lanes:
+    """Preallocated arrays for as many `lanes`, with as many `waves` per input."""
+    z, n = np.zeros, len(atol)
+    w = z((1 + 2 * n + nu + parameters + prepared, lanes))
+    parts = np.split(w, np.cumsum([1, n, nu, parameters + prepared]))
+    t, state, u, constants, dx = parts
+    angle = z((waves * nu, lanes))
+    return Lanes(
+        *(part.reshape(-1) for part in (w, t, state, dx)),
+        u,
+        constants,
+        z((ALL, n * lanes)),
+        *z((5, n * lanes)),
+        np.repeat(atol, lanes),
+        z((4, n * lanes)),
+        *z((5, lanes)),
+        z((nu, lanes)),
+        z((4, nu, lanes)),
+        z((4, waves * nu, lanes)),
+        z((waves * nu, lanes)),
+        angle,
+        angle.reshape(-1),
+        *z((6, lanes), np.int64),
+        z((nu, lanes), np.int64),
+        z(parameters),
+        z(prepared),
+    )
+
+
+@_kernel
+def _copy(source, target):
+    for q in range(len(target)):
+        target[q] = source[q]
+
+
+@_kernel
+def _weigh(row, method, k, total):
     """Write the weighted sum of the slopes k [16, width] of a row of the tableau into total."""
-    for q in range(width):
+    weights, stages, counts, _ = method
+    for q in range(len(total)):
         total[q] = 0.0
-    for first in range(0, counts[row], BLOCK):
-        w0, w1 = weights[row, first], weights[row, first + 1]
-        w2, w3 = weights[row, first + 2], weights[row, first + 3]
-        k0, k1 = stages[row, first] * width, stages[row, first + 1] * width
-        k2, k3 = stages[row, first + 2] * width, stages[row, first + 3] * width
-        for q in range(width):
-            total[q] += (w0 * k[k0 + q] + w1 * k[k1 + q]) + (w2 * k[k2 + q] + w3 * k[k3 + q])
+    for i in range(0, counts[row], BLOCK):
+        w0, w1 = weights[row, i], weights[row, i + 1]
+        w2, w3 = weights[row, i + 2], weights[row, i + 3]
+        k0, k1 = k[stages[row, i]], k[stages[row, i + 1]]
+        k2, k3 = k[stages[row, i + 2]], k[stages[row, i + 3]]
+        for q in range(len(total)):
+            total[q] += (w0 * k0[q] + w1 * k1[q]) + (w2 * k2[q] + w3 * k3[q])
 
 
-@_inlined
-def _find_pieces(lanes, nu, first, time, table, cursor, base, cubic, waves, active):
-    """Take the cubic of every input [nu] that holds from `time` [lanes] on, and the waves."""
-    breaks, coefficients, offsets = table
-    count = waves.shape[1]
+@_kernel
+def _move(x, length, total, target):
+    """Write x + length total [width] into target."""
+    for q in range(len(target)):
+        target[q] = x[q] + length[q] * total[q]
+
+
+@_kernel
+def _instant(node, time, h, t):
+    """Write the times at the fraction `node` of the steps into t."""
+    for lane in range(len(t)):
+        t[lane] = time[lane] + node * h[lane]
+
+
+@_kernel
+def _cubics(t, base, cubic, u):
+    """Write the cubics [4, nu, lanes] of all inputs at the times t [lanes] into u [nu, lanes]."""
+    for j in range(len(u)):
+        c0, c1, c2, c3 = cubic[0, j], cubic[1, j], cubic[2, j], cubic[3, j]
+        begin, to = base[j], u[j]
+        for lane in range(len(t)):
+            s = t[lane] - begin[lane]
+            to[lane] = c0[lane] + s * (c1[lane] + s * (c2[lane] + s * c3[lane]))
+
+
+@_kernel
+def _angles(t, wave, angle):
+    """Write the angles of all waves [4, rows, lanes] at the times t [lanes]."""
+    for row in range(len(angle)):
+        phase, turn, chirp, origin = wave[0, row], wave[1, row], wave[2, row], wave[3, row]
+        to = angle[row]
+        for lane in range(len(t)):
+            s = t[lane] - origin[lane]
+            to[lane] = phase[lane] + s * (turn[lane] + s * chirp[lane])
+
+
+@_kernel
+def _add_waves(count, active, sine, u):
+    """Add the waves [rows, lanes] with these sines to the inputs u [nu, lanes]."""
+    for row in range(len(sine)):
+        to, amplitude, value = u[row // count], active[row], sine[row]
+        for lane in range(len(to)):
+            to[lane] += amplitude[lane] * value[lane]
+
+
+@_kernel
+def _slopes(stage, functions, method, count, all_lanes):
+    """Evaluate the inputs at a stage and the slopes there; the states stand in w."""
+    derivative, sines = functions
+    _instant(method[3][stage], all_lanes.time, all_lanes.h, all_lanes.t)
+    _cubics(all_lanes.t, all_lanes.base, all_lanes.cubic, all_lanes.u)
+    if count > 0:
+        _angles(all_lanes.t, all_lanes.wave, all_lanes.angle)
+        sines(all_lanes.angles)
+        _add_waves(count, all_lanes.active, all_lanes.angle, all_lanes.u)
+    derivative(all_lanes.w)
+    _copy(all_lanes.dx, all_lanes.k[stage])
+
+
+@_kernel
+def _scaled(atol, relative, x, new, length, error5, error3):
+    """Write the scaled errors of the steps in place of those of order 3."""
+    for q in range(len(error3)):
+        e5, e3 = error5[q] * error5[q], error3[q] * error3[q]
+        before, after = abs(x[q]), abs(new[q])
+        larger = after if after > before else before
+        scale = (atol[q] + relative * larger) * (math.sqrt(e5 + 0.01 * e3) + TINY)
+        error3[q] = length[q] * e5 / scale
+
+
+@_kernel
+def _largest(lanes, error, norm, factor):
+    """Write the largest scaled error of every lane, and by what it changes the step."""
     for lane in range(lanes):
-        t = time[lane]
-        for j in range(nu):
-            signal, q = first[lane] + j, j * lanes + lane
-            begin, pieces = offsets[signal], offsets[signal + 1] - offsets[signal]
-            at, k = begin + signal, cursor[q]
-            while k < pieces and breaks[at + k + 1] <= t:
-                k += 1
-            while k >= 0 and breaks[at + k] > t:
-                k -= 1
-            cursor[q] = k
-            row = begin + min(max(k, 0), pieces - 1)
-            base[q] = breaks[at + min(max(k, 0), pieces - 1)]
-            moving = 1.0 if 0 <= k < pieces else 0.0
-            for c in range(4):
-                cubic[(4 * j + c) * lanes + lane] = coefficients[row, c] * (moving if c else 1.0)
-            if k >= pieces:
-                s, c = breaks[at + pieces] - base[q], coefficients[row]
-                cubic[4 * j * lanes + lane] = c[0] + s * (c[1] + s * (c[2] + s * c[3]))
-            for i in range(count):
-                wave = waves[signal, i]
-                on = wave[BEGIN] <= t < wave[END]
-                active[(count * j + i) * lanes + lane] = wave[AMPLITUDE] if on else 0.0
-
-
-@_inlined
-def _evaluate(lanes, nu, node, time, h, base, cubic, count, wave, active, angle, sines, w, at):
-    """Write times and inputs at the fraction `node` of the steps into w, from row 0 and `at` on."""
+        norm[lane] = 0.0
+    for first in range(0, len(error), lanes):
+        part = error[first : first + lanes]
+        for lane in range(len(norm)):
+            norm[lane] = norm[lane] if norm[lane] >= part[lane] else part[lane]
     for lane in range(lanes):
-        w[lane] = time[lane] + node * h[lane]
-    for j in range(nu):
-        a, b = 4 * j * lanes, j * lanes
-        for lane in range(lanes):
-            s = w[lane] - base[b + lane]
-            w[at + b + lane] = cubic[a + lane] + s * (
-                cubic[a + lanes + lane]
-                + s * (cubic[a + 2 * lanes + lane] + s * cubic[a + 3 * lanes + lane])
-            )
-    if count == 0:
-        return
-    rows = nu * count * lanes
-    for first in range(0, rows, lanes):
-        for lane in range(lanes):
-            q = first + lane
-            s = w[lane] - wave[3 * rows + q]
-            angle[q] = wave[q] + s * (wave[rows + q] + s * wave[2 * rows + q])
-    sines(angle)
-    for j in range(nu):
-        for i in range(count):
-            first = (count * j + i) * lanes
-            for lane in range(lanes):
-                w[at + j * lanes + lane] += active[first + lane] * angle[first + lane]
+        size = norm[lane] if norm[lane] > LEAST_ERROR else LEAST_ERROR
+        factor[lane] = 0.9 / math.sqrt(math.sqrt(math.sqrt(size)))
 
 
-@_inlined
-def _dense(row, t, old, length, lanes, n, lane, h, x, new, k, rows, out):
-    """Write the state at time t inside the step of a lane that began at `old` into out [n]."""
-    width, z = n * lanes, (t - old) / length
+@_kernel
+def _load(lane, b, prepare, waves, runs, all_lanes):
+    """Put trajectory `b` into a lane, at its start."""
+    n, nu, lanes = runs.start.shape[1], len(all_lanes.base), len(all_lanes.time)
+    count, parameters, kind = waves.shape[1], runs.p.shape[1], runs.drive[b]
+    all_lanes.who[lane], all_lanes.fresh[lane], all_lanes.output[lane] = b, 1, 1
+    all_lanes.time[lane], all_lanes.plan[lane] = runs.times[0], runs.limits[1]
+    all_lanes.stop[lane], all_lanes.first[lane] = runs.stop_offsets[kind], kind * nu
     for a in range(n):
-        q = a * lanes + lane
-        change, slope, end = new[q] - x[q], h[q] * k[q], h[q] * k[NEW * width + q]
-        y = h[q] * rows[3 * width + q] * z
-        y = (y + h[q] * rows[2 * width + q]) * (1.0 - z)
-        y = (y + h[q] * rows[width + q]) * z
-        y = (y + h[q] * rows[q]) * (1.0 - z)
-        y = (y + 2.0 * change - (end + slope)) * z
-        y = (y + slope - change) * (1.0 - z)
-        out[a] = x[q] + (y + change) * z
+        all_lanes.x[a * lanes + lane] = runs.start[b, a]
+        runs.out[b, 0, a] = runs.start[b, a]
+    for a in range(parameters):
+        all_lanes.given[a] = all_lanes.constants[a, lane] = runs.p[b, a]
+    prepare(all_lanes.given, all_lanes.ready)
+    for a in range(len(all_lanes.ready)):
+        all_lanes.constants[parameters + a, lane] = all_lanes.ready[a]
+    for j in range(nu):
+        all_lanes.cursor[j, lane] = 0
+        for i in range(count):
+            for c in range(4):
+                all_lanes.wave[c, count * j + i, lane] = waves[kind * nu + j, i, 1 + c]
+
+
+@_inlined
+def _next_stop(lane, runs, all_lanes):
+    """Time in s at which the step must end at the latest."""
+    kind, stop = runs.drive[all_lanes.who[lane]], all_lanes.stop[lane]
+    return runs.stops[stop] if stop < runs.stop_offsets[kind + 1] else runs.times[-1]
+
+
+@_kernel
+def _plan(table, waves, runs, all_lanes):
+    """Choose the steps of all lanes, and find the pieces of their inputs."""
+    lanes, h, width = len(all_lanes.time), all_lanes.h, len(all_lanes.x)
+    for lane in range(lanes):
+        h[lane] = 0.0
+        if all_lanes.who[lane] >= 0:
+            left = _next_stop(lane, runs, all_lanes) - all_lanes.time[lane]
+            planned = min(all_lanes.plan[lane], runs.limits[1])
+            all_lanes.ends[lane] = planned >= left
+            h[lane] = left if planned >= left else left / math.ceil(left / planned)
+            runs.steps[all_lanes.who[lane]] += 1
+            _find_pieces(lane, table, waves, all_lanes)
+    for first in range(0, width, lanes):
+        for lane in range(lanes):
+            all_lanes.length[first + lane] = h[lane]
+
+
+@_inlined
+def _find_pieces(lane, table, waves, all_lanes):
+    """Take the cubic of every input that holds from now on, and the waves, into a lane."""
+    breaks, coefficients, offsets = table
+    t, count, cubic = all_lanes.time[lane], waves.shape[1], all_lanes.cubic
+    for j in range(len(all_lanes.base)):
+        signal = all_lanes.first[lane] + j
+        begin, pieces = offsets[signal], offsets[signal + 1] - offsets[signal]
+        at, k = begin + signal, all_lanes.cursor[j, lane]
+        for i in range(count):
+            wave = waves[signal, i]
+            on = wave[BEGIN] <= t < wave[END]
+            all_lanes.active[count * j + i, lane] = wave[AMPLITUDE] if on else 0.0
+        holds = (k < 0 or breaks[at + k] <= t) and (k >= pieces or t < breaks[at + k + 1])
+        if holds and all_lanes.fresh[lane] == 0:
+            continue
+        while k < pieces and breaks[at + k + 1] <= t:
+            k += 1
+        while k >= 0 and breaks[at + k] > t:
+            k -= 1
+        all_lanes.cursor[j, lane] = k
+        piece = min(max(k, 0), pieces - 1)
+        c, start = coefficients[begin + piece], breaks[at + piece]
+        s = breaks[at + pieces] - start if k >= pieces else 0.0
+        moves = 1.0 if 0 <= k < pieces else 0.0
+        all_lanes.base[j, lane] = start
+        cubic[0, j, lane] = c[0] + s * (c[1] + s * (c[2] + s * c[3]))
+        for power in range(1, 4):
+            cubic[power, j, lane] = moves * c[power]
+    all_lanes.fresh[lane] = 0
+
+
+@_kernel
+def _attempt(functions, method, count, relative, all_lanes):
+    """Try a step in every lane."""
+    x, new, length, total = all_lanes.x, all_lanes.new, all_lanes.length, all_lanes.total
+    for stage in range(STAGES):
+        _weigh(stage, method, all_lanes.k, total)
+        _move(x, length, total, all_lanes.state)
+        _slopes(stage, functions, method, count, all_lanes)
+    _weigh(NEW, method, all_lanes.k, total)
+    _move(x, length, total, new)
+    _weigh(ERROR_5, method, all_lanes.k, all_lanes.error5)
+    _weigh(ERROR_3, method, all_lanes.k, total)
+    _scaled(all_lanes.atol, relative, x, new, length, all_lanes.error5, total)
+    _largest(len(all_lanes.time), total, all_lanes.norm, all_lanes.factor)
+
+
+@_kernel
+def _interpolate(functions, method, count, all_lanes):
+    """Evaluate what the dense output of the steps takes."""
+    _copy(all_lanes.new, all_lanes.state)
+    _slopes(NEW, functions, method, count, all_lanes)
+    for stage in range(EXTRA, ALL):
+        _weigh(stage, method, all_lanes.k, all_lanes.total)
+        _move(all_lanes.x, all_lanes.length, all_lanes.total, all_lanes.state)
+        _slopes(stage, functions, method, count, all_lanes)
+    for row in range(4):
+        _weigh(DENSE + row, method, all_lanes.k, all_lanes.dense[row])
+
+
+@_inlined
+def _write_inside(lane, end, runs, all_lanes):
+    """Write the states at the output times before `end` in s, inside the step of a lane."""
+    lanes, h = len(all_lanes.time), all_lanes.h[lane]
+    b, i, times, dense = all_lanes.who[lane], all_lanes.output[lane], runs.times, all_lanes.dense
+    while i < len(times) and times[i] < end:
+        z = (times[i] - all_lanes.time[lane]) / h
+        for a in range(runs.start.shape[1]):
+            q = a * lanes + lane
+            x, change = all_lanes.x[q], all_lanes.new[q] - all_lanes.x[q]
+            slope, slope_end = h * all_lanes.k[0, q], h * all_lanes.k[NEW, q]
+            y = h * dense[3, q] * z
+            y = (y + h * dense[2, q]) * (1.0 - z)
+            y = (y + h * dense[1, q]) * z
+            y = (y + h * dense[0, q]) * (1.0 - z)
+            y = (y + 2.0 * change - (slope_end + slope)) * z
+            y = (y + slope - change) * (1.0 - z)
+            runs.out[b, i, a] = x + (y + change) * z
+        i += 1
+    all_lanes.output[lane] = i
+
+
+@_inlined
+def _accept(lane, runs, all_lanes):
+    """Take the step of a lane, or plan a shorter one; True where its trajectory has ended."""
+    b, h, factor = all_lanes.who[lane], all_lanes.h[lane], all_lanes.factor[lane]
+    lanes, n = len(all_lanes.time), runs.start.shape[1]
+    exhausted = runs.steps[b] >= runs.limits[2]
+    if not all_lanes.norm[lane] <= 1.0:
+        all_lanes.plan[lane] = h * max(MOST_SHRINK, factor)
+        return exhausted or all_lanes.plan[lane] < SHORTEST_STEP
+    grown = h * min(MOST_GROWTH, factor)
+    planned = all_lanes.plan[lane]
+    all_lanes.plan[lane] = grown if planned <= h else max(planned, grown)
+    t = all_lanes.time[lane] + h
+    if all_lanes.ends[lane]:
+        t = _next_stop(lane, runs, all_lanes)
+        all_lanes.stop[lane] += 1
+    _write_inside(lane, t, runs, all_lanes)
+    all_lanes.time[lane] = t
+    i = all_lanes.output[lane]
+    at_output = i < len(runs.times) and runs.times[i] == t
+    for a in range(n):
+        all_lanes.x[a * lanes + lane] = all_lanes.new[a * lanes + lane]
+        if at_output:
+            runs.out[b, i, a] = all_lanes.new[a * lanes + lane]
+    all_lanes.output[lane] += at_output
+    runs.done[b] = t >= runs.times[-1]
+    return exhausted or runs.done[b]
+
+
+@_kernel
+def _needs_output(runs, all_lanes):
+    """Whether an output time lies inside any of the steps; steps to infinity are failed."""
+    lanes, inside = len(all_lanes.time), False
+    for lane in range(lanes):
+        if all_lanes.who[lane] < 0:
+            continue
+        for first in range(0, len(all_lanes.new), lanes):
+            if not abs(all_lanes.new[first + lane]) < LARGEST_STATE:
+                all_lanes.norm[lane], all_lanes.factor[lane] = np.inf, 0.0
+        i, end = all_lanes.output[lane], all_lanes.time[lane] + all_lanes.h[lane]
+        inside = inside or (i < len(runs.times) and runs.times[i] < end)
+    return inside
 
 
 @njit(
@@ -175,195 +475,33 @@ def _dense(row, t, old, length, lanes, n, lane, h, x, new, k, rows, out):
         _PREPARE,
         types.Tuple((_M, _T, _I, _V)),  # tableau
         types.Tuple((_V, _M, _I)),  # pieces of all signals
-        _C,  # waves of all signals
-        types.Tuple((_V, _I)),  # stops of every kind of drive, and where these begin
-        _M,  # parameters
-        _M,  # initial states
-        _I,  # kind of drive
-        _I,  # trajectories to integrate
-        types.Tuple((_V, _V, _V)),  # times; rtol, largest step, most steps; atol
-        types.UniTuple(types.int64, 3),  # lanes, inputs, prepared
-        _C,  # states at the times
-        _I,  # steps
-        types.boolean[::1],  # reached the end
+        types.float64[:, :, ::1],  # waves of all signals
+        types.Tuple(_RUNS),
+        types.Tuple(_LANES),
     ),
     cache=True,
-    **_OPTIONS,
+    **KERNEL,
 )
-def run_lanes(
-    functions,
-    prepare,
-    method,
-    table,
-    waves,
-    all_stops,
-    p,
-    start,
-    drive,
-    todo,
-    rules,
-    sizes,
-    out,
-    steps,
-    done,
-):
-    """Integrate the trajectories `todo`; writes states, steps, and whether the end was reached."""
-    derivative, sines = functions
-    weights, stages, counts, nodes = method
-    stops, stop_offsets = all_stops
-    times, limits, atol = rules
-    lanes, nu, prepared = sizes
-    n, parameters, count = start.shape[1], p.shape[1], waves.shape[1]
-    width, rows = n * lanes, nu * count * lanes
-    at_u, at_p = (1 + n) * lanes, (1 + n + nu) * lanes
-    at_c = at_p + parameters * lanes
-    at_dx = at_c + prepared * lanes
-    w, k = np.zeros(at_dx + width), np.zeros(ALL * width)
-    x, new, total, h_all = np.zeros(width), np.zeros(width), np.zeros(width), np.zeros(width)
-    dense, error5 = np.zeros(4 * width), np.zeros(width)
-    time, plan, h, norm = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-    who, stop, output = np.full(lanes, -1), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64)
-    first, cursor = np.zeros(lanes, np.int64), np.zeros(nu * lanes, np.int64)
-    base, cubic = np.zeros(nu * lanes), np.zeros(4 * nu * lanes)
-    wave, active, angle = np.zeros(4 * rows), np.zeros(rows), np.zeros(rows)
-    given, ready = np.zeros(parameters), np.zeros(prepared)
-    ends = np.zeros(lanes, np.bool_)
-    after, open_lanes = 0, 0
+def run_lanes(functions, prepare, method, table, waves, runs, all_lanes):
+    """Integrate the trajectories of `Runs` that are to do, in `Lanes`."""
+    runs, all_lanes = Runs(*runs), Lanes(*all_lanes)
+    lanes, count, after, open_lanes = len(all_lanes.time), waves.shape[1], 0, 0
+    for lane in range(lanes):
+        all_lanes.who[lane] = -1
     while True:
         for lane in range(lanes):
-            if who[lane] >= 0 or after == len(todo):
-                continue
-            b = todo[after]
-            after += 1
-            open_lanes += 1
-            who[lane], time[lane], plan[lane], output[lane] = b, times[0], limits[1], 0
-            stop[lane], first[lane] = stop_offsets[drive[b]], drive[b] * nu
-            for a in range(n):
-                x[a * lanes + lane] = start[b, a]
-                out[b, 0, a] = start[b, a]
-            output[lane] = 1
-            for a in range(parameters):
-                given[a] = p[b, a]
-                w[at_p + a * lanes + lane] = p[b, a]
-            prepare(given, ready)
-            for a in range(prepared):
-                w[at_c + a * lanes + lane] = ready[a]
-            for j in range(nu):
-                cursor[j * lanes + lane] = 0
-                for i in range(count):
-                    q, row = (count * j + i) * lanes + lane, waves[first[lane] + j, i]
-                    wave[q], wave[rows + q] = row[PHASE], row[TURN]
-                    wave[2 * rows + q], wave[3 * rows + q] = row[CHIRP], row[ORIGIN]
+            if all_lanes.who[lane] < 0 and after < len(runs.todo):
+                _load(lane, runs.todo[after], prepare, waves, runs, all_lanes)
+                after, open_lanes = after + 1, open_lanes + 1
         if open_lanes == 0:
             return
+        _plan(table, waves, runs, all_lanes)
+        _attempt(functions, method, count, runs.limits[0], all_lanes)
+        if _needs_output(runs, all_lanes):
+            _interpolate(functions, method, count, all_lanes)
         for lane in range(lanes):
-            b = who[lane]
-            h[lane] = 0.0
-            if b >= 0:
-                last = stop_offsets[drive[b] + 1]
-                end = stops[stop[lane]] if stop[lane] < last else times[-1]
-                left, planned = end - time[lane], min(plan[lane], limits[1])
-                ends[lane] = planned >= left
-                h[lane] = left if ends[lane] else left / np.ceil(left / planned)
-                steps[b] += 1
-        for a in range(n):
-            for lane in range(lanes):
-                h_all[a * lanes + lane] = h[lane]
-        _find_pieces(lanes, nu, first, time, table, cursor, base, cubic, waves, active)
-        for stage in range(STAGES):
-            _evaluate(
-                lanes, nu, nodes[stage], time, h, base, cubic, count, wave, active, angle, sines, w,
-                at_u,
-            )
-            if stage:
-                _weigh(stage, weights, stages, counts, k, width, total)
-                for q in range(width):
-                    w[lanes + q] = x[q] + h_all[q] * total[q]
-            else:
-                for q in range(width):
-                    w[lanes + q] = x[q]
-            derivative(w)
-            for q in range(width):
-                k[stage * width + q] = w[at_dx + q]
-        _weigh(NEW, weights, stages, counts, k, width, total)
-        for q in range(width):
-            new[q] = x[q] + h_all[q] * total[q]
-        _weigh(16, weights, stages, counts, k, width, error5)
-        _weigh(17, weights, stages, counts, k, width, total)
-        for lane in range(lanes):
-            norm[lane] = 0.0
-        for a in range(n):
-            for lane in range(lanes):
-                q = a * lanes + lane
-                e5, e3 = error5[q] * error5[q], total[q] * total[q]
-                scale = atol[a] + limits[0] * max(abs(x[q]), abs(new[q]))
-                error = h[lane] * e5 / (np.sqrt(e5 + 0.01 * e3) + 1e-300) / scale
-                norm[lane] = norm[lane] if norm[lane] >= error else error
-        inside = False
-        for lane in range(lanes):
-            b = who[lane]
-            if b < 0:
-                continue
-            for a in range(n):
-                if not abs(new[a * lanes + lane]) < LARGEST_STATE:
-                    norm[lane] = np.inf
-            ahead = time[lane] + h[lane]
-            inside = inside or (output[lane] < len(times) and times[output[lane]] < ahead)
-        if inside:
-            for stage in range(NEW, ALL):
-                if stage == NEW:
-                    for q in range(width):
-                        w[lanes + q] = new[q]
-                else:
-                    _weigh(stage, weights, stages, counts, k, width, total)
-                    for q in range(width):
-                        w[lanes + q] = x[q] + h_all[q] * total[q]
-                _evaluate(
-                    lanes, nu, nodes[stage], time, h, base, cubic, count, wave, active, angle,
-                    sines, w, at_u,
-                )
-                derivative(w)
-                for q in range(width):
-                    k[stage * width + q] = w[at_dx + q]
-            for row in range(4):
-                _weigh(18 + row, weights, stages, counts, k, width, total)
-                for q in range(width):
-                    dense[row * width + q] = total[q]
-        for lane in range(lanes):
-            b = who[lane]
-            if b < 0:
-                continue
-            size = max(norm[lane], LEAST_ERROR)
-            factor = 0.9 / np.sqrt(np.sqrt(np.sqrt(size)))
-            if not norm[lane] <= 1.0:
-                plan[lane] = h[lane] * max(0.2, factor)
-                if plan[lane] < SHORTEST_STEP or steps[b] >= limits[2]:
-                    who[lane] = -1
-                    open_lanes -= 1
-                continue
-            grown = h[lane] * min(6.0, factor)
-            plan[lane] = grown if plan[lane] <= h[lane] else max(plan[lane], grown)
-            old, t = time[lane], time[lane] + h[lane]
-            if ends[lane]:
-                last = stop_offsets[drive[b] + 1]
-                t = stops[stop[lane]] if stop[lane] < last else times[-1]
-                stop[lane] += 1
-            while output[lane] < len(times) and times[output[lane]] < t:
-                _dense(
-                    0, times[output[lane]], old, h[lane], lanes, n, lane, h_all, x, new, k, dense,
-                    out[b, output[lane]],
-                )
-                output[lane] += 1
-            time[lane] = t
-            for a in range(n):
-                x[a * lanes + lane] = new[a * lanes + lane]
-            if output[lane] < len(times) and times[output[lane]] == t:
-                for a in range(n):
-                    out[b, output[lane], a] = x[a * lanes + lane]
-                output[lane] += 1
-            if t >= times[-1] or steps[b] >= limits[2]:
-                done[b] = t >= times[-1]
-                who[lane] = -1
+            if all_lanes.who[lane] >= 0 and _accept(lane, runs, all_lanes):
+                all_lanes.who[lane] = -1
                 open_lanes -= 1
 
 
@@ -413,26 +551,22 @@ def integrate_in_lanes(
     inner = [s[(s > times[0]) & (s < times[-1])] for s in stops]
     offsets = np.cumsum([0, *map(len, inner)], dtype=np.int64)
     most = min(accuracy.most_steps, PATIENCE)
-    rules = (times, np.array([accuracy.relative, accuracy.largest_step, most]), accuracy.absolute)
+    limits = np.array([accuracy.relative, accuracy.largest_step, most])
+    all_stops = np.concatenate([np.empty(0), *inner])
+    pieces, waves = (table.breaks, table.coefficients, table.offsets), waves_of(table)
+    sizes = (module.LANES, len(model.input_names), p.shape[1], module.PREPARED, waves.shape[1])
     done = np.zeros(len(p), np.bool_)
 
     def portion(rows: IntArray) -> None:
+        runs = (p, x, drive, rows, times, limits, all_stops, offsets)
         run_lanes(
             (module.lane_derivative, module.lane_sines),
             module.prepare,
             tableau(),
-            (table.breaks, table.coefficients, table.offsets),
-            waves_of(table),
-            (np.concatenate([np.empty(0), *inner]), offsets),
-            p,
-            x,
-            drive,
-            rows,
-            rules,
-            (module.LANES, len(model.input_names), module.PREPARED),
-            out,
-            steps,
-            done,
+            pieces,
+            waves,
+            (*runs, out, steps, done),
+            tuple(new_lanes(*sizes, accuracy.absolute)),
         )
 
     with ThreadPoolExecutor(threads) as pool:
