@@ -53,7 +53,8 @@ class BatchProblem:
 @dataclass(frozen=True, eq=False)
 class BatchStates:
     """States of b trajectories: status [b] (see `kernels.records`, or IMPOSSIBLE) and `reasons` [b]
-    in words, empty where it is DONE; steps tried [b]; x [b, k, n] at the times, NaN where it failed.
+    in words, empty where it is DONE; steps tried [b]; x [b, k, n] at the times, NaN where a run
+    failed.
     """
 
     status: NDArray[np.int64]
@@ -76,7 +77,10 @@ def integrate_batch(
     """
     count, (k, n) = len(p), (len(problem.times), x.shape[1])
     found = BatchStates(
-        np.full(count, DONE), [""] * count, np.zeros(count, np.int64), np.full((count, k, n), np.nan)
+        np.full(count, DONE),
+        [""] * count,
+        np.zeros(count, np.int64),
+        np.full((count, k, n), np.nan),
     )
     _note_impossible(problem.model, p, x, found)
     possible = np.flatnonzero(found.status == DONE)
@@ -181,7 +185,9 @@ _OUTPUTS = types.FunctionType(types.void(types.float64, *[VECTOR] * 4))
 
 
 @njit(
-    types.void(_OUTPUTS, VECTOR, types.float64[:, :, ::1], MATRIX, MATRIX, types.float64[:, :, ::1]),
+    types.void(
+        _OUTPUTS, VECTOR, types.float64[:, :, ::1], MATRIX, MATRIX, types.float64[:, :, ::1]
+    ),
     cache=True,
     **KERNEL,
 )

@@ -8,6 +8,7 @@ trajectory has the same bits in any lane and beside any others.
 """
 
 import math
+import warnings
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
@@ -15,6 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit, types
+from numba.core.errors import NumbaExperimentalFeatureWarning
 from numpy.typing import NDArray
 from scipy.integrate import DOP853
 
@@ -78,6 +80,8 @@ def tableau() -> tuple[FloatArray, IntArray, IntArray, FloatArray]:
     return *_blocks(rows), nodes
 
 
+# numba warns of functions as arguments at every compilation; what it has of them is enough here.
+warnings.filterwarnings("ignore", "First-class function type", NumbaExperimentalFeatureWarning)
 _V, _I = types.float64[::1], types.int64[::1]
 _M, _T = types.float64[:, ::1], types.int64[:, ::1]
 _IN_PLACE = types.FunctionType(types.void(_V))
