@@ -237,13 +237,21 @@ class _Wanted:
     def refuse_too_large(self, count: int, k: int) -> None:
         """Raise InputError where the results do not fit into memory."""
         need = 8.0 * count * (len(self.signals) * k + len(self.final) + len(self.reductions))
-        have = float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+        have = machine_memory()
         if need > SHARE * have:
             raise InputError(
                 f"{count} runs with {len(self.signals)} signals at {k} times need"
                 f" {need / 1e9:.3g} GB, and this machine has {have / 1e9:.3g} GB; ask for"
                 " reductions or fewer times, or let `ptp-symbolic sweep` write them to disk."
             )
+
+
+def machine_memory() -> float:
+    """Memory of this machine in bytes; without bound where the system does not say."""
+    try:
+        return float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+    except (AttributeError, ValueError, OSError):
+        return np.inf
 
 
 def _run(

@@ -44,7 +44,7 @@ class Reduction:
     def __call__(self, times: FloatArray, signals: Mapping[str, FloatArray]) -> FloatArray:
         """The numbers [b] of `signals` [b, k] at `times` [k] in s; NaN where a signal is NaN."""
         if "pointing" in self.kind:
-            value = self._off_line_of_sight(signals)
+            value = line_of_sight_error(signals, self.references)
         else:
             (name,) = self.signals
             value = signals[name] - self.references.get(name, 0.0)
@@ -67,12 +67,17 @@ class Reduction:
         settled = np.where(outside.any(axis=1), times[after], times[0])
         return np.where(np.isnan(value).any(axis=1), np.nan, settled)
 
-    def _off_line_of_sight(self, signals: Mapping[str, FloatArray]) -> FloatArray:
-        """Angle [b, k] in rad between the line of sight and that of the references (haversine)."""
-        pan, tilt = signals.get(PAN, np.zeros(1)), signals.get(TILT, np.zeros(1))
-        aim_pan, aim_tilt = self.references.get(PAN, pan), self.references.get(TILT, tilt)
-        across = np.cos(tilt) * np.cos(aim_tilt) * np.sin(0.5 * (pan - aim_pan)) ** 2
-        return 2.0 * np.arcsin(np.sqrt(np.sin(0.5 * (tilt - aim_tilt)) ** 2 + across))
+
+def line_of_sight_error(
+    signals: Mapping[str, FloatArray], references: Mapping[str, FloatArray]
+) -> FloatArray:
+    """Angle [b, k] in rad between the line of sight of the angles [b, k] among `signals` and that
+    of the `references` [k] (haversine); an axis without reference adds nothing.
+    """
+    pan, tilt = signals.get(PAN, np.zeros(1)), signals.get(TILT, np.zeros(1))
+    aim_pan, aim_tilt = references.get(PAN, pan), references.get(TILT, tilt)
+    across = np.cos(tilt) * np.cos(aim_tilt) * np.sin(0.5 * (pan - aim_pan)) ** 2
+    return 2.0 * np.arcsin(np.sqrt(np.sin(0.5 * (tilt - aim_tilt)) ** 2 + across))
 
 
 def reductions(
@@ -131,17 +136,20 @@ def _pointing(
     return Reduction(text, kind, present, "rad", references)
 
 
+def reference(text: str, unit: str, times: FloatArray) -> FloatArray:
+    """A profile or a quantity as values [k] at the times in s. Raises InputError for another."""
+    if ":" in text:
+        signal = parse_profile(text, float(times[-1] - times[0]))
+    else:
+        signal = constant(quantity(_number(text), unit, "Reference"))
+    return values_at(stack([signal]), times)[:, 0]
+
+
 def _reference(text: str, unit: str, where: str, times: FloatArray) -> FloatArray:
-    """A profile or a quantity as values [k]."""
     try:
-        signal = (
-            parse_profile(text, float(times[-1] - times[0]))
-            if ":" in text
-            else constant(quantity(_number(text), unit, "Reference"))
-        )
+        return reference(text, unit, times)
     except InputError as error:
         raise InputError(f"Output '{where}': {error}") from error
-    return values_at(stack([signal]), times)[:, 0]
 
 
 def _number(text: str) -> float | str:
