@@ -37,6 +37,7 @@ QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 POINTING = "pointing error"
 SOBOL_BITS = 30  # SciPy skips no points of sequences with more than 32
 CHUNK_BYTES = 64e6
+CONNECT_WITHIN = "5s"
 MOST_ROWS = 16_384  # of a chunk, so that little is lost where a run is interrupted
 FORMS = (
     "NAME=LOW:HIGH, NAME=loguniform:LOW:HIGH, NAME=normal:MEAN:SD, NAME=lognormal:MEDIAN:SIGMA,"
@@ -196,10 +197,11 @@ def refuse_plan(machine: Machine, plan: SweepPlan, out: Path) -> None:
     if not plan.vary:
         raise InputError(f"Nothing varies; give `vary`: {FORMS}.")
     k, n = len(plan.times), len(machine.state_names) + len(plan.signals)
-    need, have = 8.0 * plan.chunk * k * n, machine_memory()
+    need, have = 8.0 * min(plan.chunk, plan.samples) * k * n, machine_memory()
     if need > SHARE * have:
         raise InputError(
-            f"A chunk of {plan.chunk} runs with {k} times of {n} signals needs {need / 1e9:.3g} GB"
+            f"A chunk of {min(plan.chunk, plan.samples)} runs with {k} times of {n} signals needs"
+            f" {need / 1e9:.3g} GB"
             f" of memory, and this machine has {have / 1e9:.3g} GB; take a smaller `chunk`."
         )
     row = 8.0 * (len(plan.vary) + len(plan.outputs) + 4 + BAND_TIMES * (len(plan.signals) + 1))
@@ -284,11 +286,12 @@ def run_sweep(
     scheduler at `cluster`. Raises InputError as `begin` does, for a cluster that does not answer,
     and for a disk that is full, with whole chunks left.
     """
+    client = None if cluster is None else connected(cluster)
     missing = begin(machine, plan, out, resume)
     parts = (
         ((c, compute_part(machine, plan, c)) for c in missing)
-        if cluster is None
-        else _on_cluster(machine, plan, missing, cluster)
+        if client is None
+        else _on_cluster(machine, plan, missing, client)
     )
     done = plan.chunks - len(missing)
     for chunk, part in parts:
@@ -302,28 +305,33 @@ def run_sweep(
         progress(f"{done} of {plan.chunks} chunks, {min(done * plan.chunk, plan.samples)} runs")
 
 
+def connected(address: str) -> Any:
+    """A client of the Dask scheduler at `address`. Raises InputError where none answers."""
+    distributed = extra_library("distributed", "cluster")
+    try:
+        return distributed.Client(address, timeout=CONNECT_WITHIN)
+    except (OSError, ValueError) as error:
+        raise InputError(
+            f"No Dask scheduler answers at '{address}'; start one with `dask scheduler` and workers"
+            f" with `dask worker {address}`."
+        ) from error
+
+
 def _on_cluster(
-    machine: Machine, plan: SweepPlan, missing: Sequence[int], address: str
+    machine: Machine, plan: SweepPlan, missing: Sequence[int], client: Any
 ) -> Iterator[tuple[int, Part]]:
     """The chunks in the order in which the workers of a Dask cluster finish them.
 
     A worker that dies loses nothing: the scheduler gives its chunks to others. The machine travels
     as its platform and the hash of its equations. As many chunks are under way as keep all workers
-    busy, and no more are kept in memory.
+    busy, and no more are kept in memory. Raises InputError where the scheduler is lost.
     """
     distributed = extra_library("distributed", "cluster")
-    try:
-        client = distributed.Client(address, timeout="5s")
-    except (OSError, ValueError, TimeoutError) as error:
-        raise InputError(
-            f"No Dask scheduler answers at '{address}'; start one with `dask scheduler` and workers"
-            f" with `dask worker {address}`."
-        ) from error
     with client:
         room = 2 * max(1, sum(client.nthreads().values()))
         waiting = iter(missing)
         futures: dict[Any, int] = {}
-        finished = distributed.as_completed()
+        finished = distributed.as_completed(loop=client.loop)
 
         def submit() -> None:
             chunk = next(waiting, None)
@@ -335,7 +343,12 @@ def _on_cluster(
         for _ in range(min(room, len(missing))):
             submit()
         for future in finished:
-            part = future.result()
+            try:
+                part = future.result()
+            except (distributed.CancelledError, OSError) as error:
+                raise InputError(
+                    f"The Dask scheduler is lost ({error}); start it again and add --resume."
+                ) from error
             chunk = futures.pop(future)
             submit()
             yield chunk, part
