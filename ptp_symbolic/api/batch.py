@@ -178,10 +178,10 @@ def simulate_batch(
     columns = {**(parameters or {}), **given}
     start = (initial if x0 is None else x0) or {}
     count = _count(columns, start, seeds, drives)
-    p, p_given = _matrix(machine, columns, machine.parameter_names, "Parameter", count)
-    x, x_given = _matrix(machine, start, machine.state_names, "Initial state", count)
     wanted = _Wanted.of(machine, outputs, noise or {}, t)
     wanted.refuse_too_large(count, len(t))
+    p, p_given = _matrix(machine, columns, machine.parameter_names, "Parameter", count)
+    x, x_given = _matrix(machine, start, machine.state_names, "Initial state", count)
     chosen = None if method is None else chosen_method(machine, method, METHODS)
     accuracy = checked_accuracy(machine, rtol, atol, largest_step or LARGEST_STEP)
     if largest_step is None and lanes.suits(machine, chosen, accuracy):
