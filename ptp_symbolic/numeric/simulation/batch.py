@@ -85,7 +85,8 @@ def integrate_batch(
     _note_impossible(problem.model, p, x, found)
     possible = np.flatnonzero(found.status == DONE)
     tables = [stack(signals) for signals in problem.drives]
-    threads = threads or len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1
+    stops = [table.with_stops(problem.times[[0, -1]]) for table in tables]
+    threads = threads or cores()
     left = possible
     if lanes.suits(problem.model, problem.method, problem.accuracy):
         left = lanes.integrate_in_lanes(
@@ -104,18 +105,34 @@ def integrate_batch(
         )
 
     def one(b: int) -> None:
-        _one_run(problem, tables[drive[b]], p[b], x[b], b, found)
+        kind = drive[b]
+        _one_run(problem, tables[kind], stops[kind], p[b], x[b], b, found)
 
     _in_threads(one, left, threads)
     return found
 
 
+def cores() -> int:
+    """Number of cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
 def _one_run(
-    problem: BatchProblem, table: InputTable, p: FloatArray, x: FloatArray, b: int, to: BatchStates
+    problem: BatchProblem,
+    table: InputTable,
+    stops: FloatArray,
+    p: FloatArray,
+    x: FloatArray,
+    b: int,
+    to: BatchStates,
 ) -> None:
     """Trajectory `b` by the runner with events, written to its place."""
     model, times = problem.model, problem.times
-    table = delayed(table, delays_of(model, p))
+    if np.any(model.input_delays >= 0):
+        table = delayed(table, delays_of(model, p))
+        stops = table.with_stops(times[[0, -1]])
     try:
         run = integrate(
             model,
@@ -124,7 +141,7 @@ def _one_run(
             x,
             table,
             table.held,
-            table.with_stops(times[[0, -1]]),
+            stops,
             times,
             problem.accuracy,
         )

@@ -89,7 +89,7 @@ _PREPARE = types.FunctionType(types.void(_V, _V))
 _RUNS = (_M, _M, _I, _I, _V, _V, _V, _I, types.float64[:, :, ::1], _I, types.boolean[::1])
 _C = types.float64[:, :, ::1]
 _LANES = (*[_V] * 4, _M, _M, _M, *[_V] * 6, _M, *[_V] * 5, _M, _C, _C, _M, _M, _V)
-_LANES += (*[_I] * 6, _T, _V, _V)
+_LANES += (*[_I] * 5, _T, _M, _V, _V)
 _kernel = njit(**KERNEL)
 _inlined = njit(forceinline=True, **KERNEL)  # per lane: records are long arguments
 
@@ -102,8 +102,8 @@ class Lanes(NamedTuple):
     weighted slopes, step length in s, tolerance; dense [4, n]; time, plan, h, norm, factor: time,
     planned and present step in s, scaled error and what it makes of the step; base [nu], cubic
     [4, nu]: pieces of the inputs; wave [4, r nu], active, angle [r nu]: their sines; who, stop,
-    output, first, fresh, ends: trajectory or -1, indices of the next stop, output time and signal,
-    whether the trajectory is new, whether the step ends at a stop; cursor [nu]: pieces found last;
+    output, first, ends: trajectory or -1, indices of the next stop, output time and signal,
+    whether the step ends at a stop; cursor, until [nu]: pieces found last, and when they end in s;
     given, ready: a parameter vector and what is prepared of it.
     """
 
@@ -136,9 +136,9 @@ class Lanes(NamedTuple):
     stop: Any
     output: Any
     first: Any
-    fresh: Any
     ends: Any
     cursor: Any
+    until: Any
     given: Any
     ready: Any
 
@@ -186,8 +186,9 @@ def new_lanes(
         z((waves * nu, lanes)),
         angle,
         angle.reshape(-1),
-        *z((6, lanes), np.int64),
+        *z((5, lanes), np.int64),
         z((nu, lanes), np.int64),
+        z((nu, lanes)),
         z(parameters),
         z(prepared),
     )
@@ -203,15 +204,20 @@ def _copy(source, target):
 def _weigh(row, method, k, total):
     """Write the weighted sum of the slopes k [16, width] of a row of the tableau into total."""
     weights, stages, counts, _ = method
-    for q in range(len(total)):
-        total[q] = 0.0
+    if counts[row] == 0:
+        for q in range(len(total)):
+            total[q] = 0.0
     for i in range(0, counts[row], BLOCK):
         w0, w1 = weights[row, i], weights[row, i + 1]
         w2, w3 = weights[row, i + 2], weights[row, i + 3]
         k0, k1 = k[stages[row, i]], k[stages[row, i + 1]]
         k2, k3 = k[stages[row, i + 2]], k[stages[row, i + 3]]
-        for q in range(len(total)):
-            total[q] += (w0 * k0[q] + w1 * k1[q]) + (w2 * k2[q] + w3 * k3[q])
+        if i == 0:
+            for q in range(len(total)):
+                total[q] = (w0 * k0[q] + w1 * k1[q]) + (w2 * k2[q] + w3 * k3[q])
+        else:
+            for q in range(len(total)):
+                total[q] += (w0 * k0[q] + w1 * k1[q]) + (w2 * k2[q] + w3 * k3[q])
 
 
 @_kernel
@@ -260,11 +266,12 @@ def _add_waves(count, active, sine, u):
 
 
 @_kernel
-def _slopes(stage, functions, method, count, all_lanes):
+def _slopes(stage, functions, method, moves, count, all_lanes):
     """Evaluate the inputs at a stage and the slopes there; the states stand in w."""
     derivative, sines = functions
     _instant(method[3][stage], all_lanes.time, all_lanes.h, all_lanes.t)
-    _cubics(all_lanes.t, all_lanes.base, all_lanes.cubic, all_lanes.u)
+    if stage == 0 or moves or count > 0:
+        _cubics(all_lanes.t, all_lanes.base, all_lanes.cubic, all_lanes.u)
     if count > 0:
         _angles(all_lanes.t, all_lanes.wave, all_lanes.angle)
         sines(all_lanes.angles)
@@ -291,8 +298,9 @@ def _largest(lanes, error, norm, factor):
         norm[lane] = 0.0
     for first in range(0, len(error), lanes):
         part = error[first : first + lanes]
-        for lane in range(len(norm)):
-            norm[lane] = norm[lane] if norm[lane] >= part[lane] else part[lane]
+        for lane in range(len(part)):
+            largest, error_here = norm[lane], part[lane]
+            norm[lane] = largest if largest >= error_here else error_here
     for lane in range(lanes):
         size = norm[lane] if norm[lane] > LEAST_ERROR else LEAST_ERROR
         factor[lane] = 0.9 / math.sqrt(math.sqrt(math.sqrt(size)))
@@ -303,7 +311,7 @@ def _load(lane, b, prepare, waves, runs, all_lanes):
     """Put trajectory `b` into a lane, at its start."""
     n, nu, lanes = runs.start.shape[1], len(all_lanes.base), len(all_lanes.time)
     count, parameters, kind = waves.shape[1], runs.p.shape[1], runs.drive[b]
-    all_lanes.who[lane], all_lanes.fresh[lane], all_lanes.output[lane] = b, 1, 1
+    all_lanes.who[lane], all_lanes.output[lane] = b, 1
     all_lanes.time[lane], all_lanes.plan[lane] = runs.times[0], runs.limits[1]
     all_lanes.stop[lane], all_lanes.first[lane] = runs.stop_offsets[kind], kind * nu
     for a in range(n):
@@ -315,7 +323,7 @@ def _load(lane, b, prepare, waves, runs, all_lanes):
     for a in range(len(all_lanes.ready)):
         all_lanes.constants[parameters + a, lane] = all_lanes.ready[a]
     for j in range(nu):
-        all_lanes.cursor[j, lane] = 0
+        all_lanes.cursor[j, lane], all_lanes.until[j, lane] = -1, -np.inf
         for i in range(count):
             for c in range(4):
                 all_lanes.wave[c, count * j + i, lane] = waves[kind * nu + j, i, 1 + c]
@@ -336,9 +344,10 @@ def _plan(table, waves, runs, all_lanes):
         h[lane] = 0.0
         if all_lanes.who[lane] >= 0:
             left = _next_stop(lane, runs, all_lanes) - all_lanes.time[lane]
-            planned = min(all_lanes.plan[lane], runs.limits[1])
+            planned = all_lanes.plan[lane]
+            planned = planned if planned < runs.limits[1] else runs.limits[1]
             all_lanes.ends[lane] = planned >= left
-            h[lane] = left if planned >= left else left / math.ceil(left / planned)
+            h[lane] = left if planned >= left else left / np.ceil(left / planned)
             runs.steps[all_lanes.who[lane]] += 1
             _find_pieces(lane, table, waves, all_lanes)
     for first in range(0, width, lanes):
@@ -359,14 +368,12 @@ def _find_pieces(lane, table, waves, all_lanes):
             wave = waves[signal, i]
             on = wave[BEGIN] <= t < wave[END]
             all_lanes.active[count * j + i, lane] = wave[AMPLITUDE] if on else 0.0
-        holds = (k < 0 or breaks[at + k] <= t) and (k >= pieces or t < breaks[at + k + 1])
-        if holds and all_lanes.fresh[lane] == 0:
+        if t < all_lanes.until[j, lane]:
             continue
         while k < pieces and breaks[at + k + 1] <= t:
             k += 1
-        while k >= 0 and breaks[at + k] > t:
-            k -= 1
         all_lanes.cursor[j, lane] = k
+        all_lanes.until[j, lane] = breaks[at + k + 1] if k < pieces else np.inf
         piece = min(max(k, 0), pieces - 1)
         c, start = coefficients[begin + piece], breaks[at + piece]
         s = breaks[at + pieces] - start if k >= pieces else 0.0
@@ -375,17 +382,16 @@ def _find_pieces(lane, table, waves, all_lanes):
         cubic[0, j, lane] = c[0] + s * (c[1] + s * (c[2] + s * c[3]))
         for power in range(1, 4):
             cubic[power, j, lane] = moves * c[power]
-    all_lanes.fresh[lane] = 0
 
 
 @_kernel
-def _attempt(functions, method, count, relative, all_lanes):
+def _attempt(functions, method, moves, count, relative, all_lanes):
     """Try a step in every lane."""
     x, new, length, total = all_lanes.x, all_lanes.new, all_lanes.length, all_lanes.total
     for stage in range(STAGES):
         _weigh(stage, method, all_lanes.k, total)
         _move(x, length, total, all_lanes.state)
-        _slopes(stage, functions, method, count, all_lanes)
+        _slopes(stage, functions, method, moves, count, all_lanes)
     _weigh(NEW, method, all_lanes.k, total)
     _move(x, length, total, new)
     _weigh(ERROR_5, method, all_lanes.k, all_lanes.error5)
@@ -395,14 +401,14 @@ def _attempt(functions, method, count, relative, all_lanes):
 
 
 @_kernel
-def _interpolate(functions, method, count, all_lanes):
+def _interpolate(functions, method, moves, count, all_lanes):
     """Evaluate what the dense output of the steps takes."""
     _copy(all_lanes.new, all_lanes.state)
-    _slopes(NEW, functions, method, count, all_lanes)
+    _slopes(NEW, functions, method, moves, count, all_lanes)
     for stage in range(EXTRA, ALL):
         _weigh(stage, method, all_lanes.k, all_lanes.total)
         _move(all_lanes.x, all_lanes.length, all_lanes.total, all_lanes.state)
-        _slopes(stage, functions, method, count, all_lanes)
+        _slopes(stage, functions, method, moves, count, all_lanes)
     for row in range(4):
         _weigh(DENSE + row, method, all_lanes.k, all_lanes.dense[row])
 
@@ -479,6 +485,7 @@ def _needs_output(runs, all_lanes):
         _PREPARE,
         types.Tuple((_M, _T, _I, _V)),  # tableau
         types.Tuple((_V, _M, _I)),  # pieces of all signals
+        types.boolean,  # whether these are more than constants
         types.float64[:, :, ::1],  # waves of all signals
         types.Tuple(_RUNS),
         types.Tuple(_LANES),
@@ -486,7 +493,7 @@ def _needs_output(runs, all_lanes):
     cache=True,
     **KERNEL,
 )
-def run_lanes(functions, prepare, method, table, waves, runs, all_lanes):
+def run_lanes(functions, prepare, method, table, moves, waves, runs, all_lanes):
     """Integrate the trajectories of `Runs` that are to do, in `Lanes`."""
     runs, all_lanes = Runs(*runs), Lanes(*all_lanes)
     lanes, count, after, open_lanes = len(all_lanes.time), waves.shape[1], 0, 0
@@ -500,9 +507,9 @@ def run_lanes(functions, prepare, method, table, waves, runs, all_lanes):
         if open_lanes == 0:
             return
         _plan(table, waves, runs, all_lanes)
-        _attempt(functions, method, count, runs.limits[0], all_lanes)
+        _attempt(functions, method, moves, count, runs.limits[0], all_lanes)
         if _needs_output(runs, all_lanes):
-            _interpolate(functions, method, count, all_lanes)
+            _interpolate(functions, method, moves, count, all_lanes)
         for lane in range(lanes):
             if all_lanes.who[lane] >= 0 and _accept(lane, runs, all_lanes):
                 all_lanes.who[lane] = -1
@@ -568,6 +575,7 @@ def integrate_in_lanes(
             module.prepare,
             tableau(),
             pieces,
+            bool(table.coefficients[:, 1:].any()),
             waves,
             (*runs, out, steps, done),
             tuple(new_lanes(*sizes, accuracy.absolute)),
