@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ptp_symbolic.api.extras import extra_library
 from ptp_symbolic.api.inputs import Input, Inputs, input_signals
-from ptp_symbolic.api.machine import Machine, Source, load
+from ptp_symbolic.api.machine import Machine, Source, load, machine_of
 from ptp_symbolic.api.reductions import Reduction, is_reduction, reductions
 from ptp_symbolic.api.simulation import STATES
 from ptp_symbolic.api.values import parameter_values, state_vector
@@ -121,7 +121,7 @@ class Batch:
         """
         xarray = extra_library("xarray")
         unit = {**self.model.units, **self.units}
-        columns = {
+        columns: dict[str, Any] = {
             name: ("run", values, {"units": unit[name]} if name in unit else {})
             for name, values in self.table().items()
         }
@@ -264,7 +264,7 @@ def _run(
     threads: int | None,
 ) -> Batch:
     """All runs, chunk by chunk: only what is wanted is kept."""
-    machine, count, k = problem.model, len(p), len(problem.times)
+    machine, count, k = machine_of(problem.model), len(p), len(problem.times)
     numbers = {name: np.empty(count) for name in wanted.final}
     numbers |= {each.text: np.empty(count) for each in wanted.reductions}
     signals = {name: np.empty((count, k)) for name in wanted.signals}
@@ -333,8 +333,8 @@ def _drives(
             raise unknown("input, parameter or argument", name, known)
     own = {n: v for n, v in values.items() if n in machine.parameter_names}
     common = input_signals(machine, {n: v for n, v in values.items() if n not in own}, t)
-    several = isinstance(inputs, list | tuple)
-    kinds = [input_signals(machine, each, t) for each in (inputs if several else [inputs])]
+    several: Sequence[Any] = inputs if isinstance(inputs, list | tuple) else [inputs]
+    kinds = [input_signals(machine, each, t) for each in several]
     return own, [{**common, **kind} for kind in kinds]
 
 
@@ -365,7 +365,7 @@ def _matrix(
     for name in columns:
         if name not in names:
             raise unknown(what.lower().split()[-1], name, names)
-    same = {n: v for n, v in columns.items() if not np.ndim(v)}
+    same: dict[str, Any] = {n: v for n, v in columns.items() if not np.ndim(v)}
     if what == "Parameter":
         common = machine.parameter_vector(parameter_values(machine, same))
     else:

@@ -193,7 +193,7 @@ def _note_impossible(model: Model, p: FloatArray, x: FloatArray, to: BatchStates
             _mark(to, b, error)
 
 
-def _mark(to: BatchStates, b: int, why: InputError) -> None:
+def _mark(to: BatchStates, b: int | np.signedinteger, why: InputError) -> None:
     if to.status[b] == DONE:
         to.status[b], to.reasons[b] = IMPOSSIBLE, str(why)
 

@@ -171,7 +171,7 @@ def new_lanes(
     parts = np.split(w, np.cumsum([1, n, nu, parameters + prepared]))
     t, state, u, constants, dx = parts
     angle = z((waves * nu, lanes))
-    return Lanes(
+    arrays: list[Any] = [
         *(part.reshape(-1) for part in (w, t, state, dx)),
         u,
         constants,
@@ -191,7 +191,8 @@ def new_lanes(
         z((nu, lanes)),
         z(parameters),
         z(prepared),
-    )
+    ]
+    return Lanes(*arrays)
 
 
 @_kernel
