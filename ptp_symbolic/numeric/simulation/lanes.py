@@ -33,7 +33,7 @@ NEW, EXTRA = 12, 13  # rows of the slopes: at the end of the step, then three fo
 ALL = 16
 ERROR_5, ERROR_3, DENSE = 16, 17, 18  # rows of the tableau
 BLOCK = 4  # slopes that are added at once
-TINY = 1e-300
+TINY = 1e-200  # products with tolerances must not be denormal
 MOST_SHRINK, MOST_GROWTH = 0.2, 6.0  # of a step
 LEAST_ERROR = 1e-8  # scaled; the step grows no further below
 SHORTEST_STEP = 1e-11  # s
@@ -88,7 +88,7 @@ _IN_PLACE = types.FunctionType(types.void(_V))
 _PREPARE = types.FunctionType(types.void(_V, _V))
 _RUNS = (_M, _M, _I, _I, _V, _V, _V, _I, types.float64[:, :, ::1], _I, types.boolean[::1])
 _C = types.float64[:, :, ::1]
-_LANES = (*[_V] * 4, _M, _M, _M, *[_V] * 6, _M, *[_V] * 5, _M, _C, _C, _M, _M, _V)
+_LANES = (*[_V] * 4, _M, _M, _M, *[_V] * 3, _M, *[_V] * 3, _M, *[_V] * 5, _M, _C, _C, _M, _M, _V)
 _LANES += (*[_I] * 5, _T, _M, _V, _V)
 _kernel = njit(**KERNEL)
 _inlined = njit(forceinline=True, **KERNEL)  # per lane: records are long arguments
@@ -98,12 +98,12 @@ class Lanes(NamedTuple):
     """What stands side by side: rows of L numbers, one per trajectory, in flat arrays.
 
     w: what the emitted derivative reads and writes, and in it t, state, u, constants, dx; k
-    [16, n]: slopes; x, new, total, error5, length, atol [n]: states at both ends of the step,
-    weighted slopes, step length in s, tolerance; dense [4, n]; time, plan, h, norm, factor: time,
-    planned and present step in s, scaled error and what it makes of the step; base [nu], cubic
-    [4, nu]: pieces of the inputs; wave [4, r nu], active, angle [r nu]: their sines; who, stop,
-    output, first, ends: trajectory or -1, indices of the next stop, output time and signal,
-    whether the step ends at a stop; cursor, until [nu]: pieces found last, and when they end in s;
+    [16, n]: slopes; x, new, total (by rows: errors), error5, length, atol [n]: states at both ends
+    of the step, weighted slopes, step length in s, tolerance; dense [4, n]; time, plan, h, norm,
+    factor: time, planned and present step in s, scaled error and what it makes of the step; base
+    [nu], cubic [4, nu]: pieces of the inputs; wave [4, r nu], active, angle [r nu]: their sines;
+    who, stop, output, first, ends: trajectory or -1, indices of the next stop, output time and
+    signal, whether the step ends at a stop; cursor, until [nu]: pieces found last, and their ends;
     given, ready: a parameter vector and what is prepared of it.
     """
 
@@ -117,6 +117,7 @@ class Lanes(NamedTuple):
     x: Any
     new: Any
     total: Any
+    errors: Any
     error5: Any
     length: Any
     atol: Any
@@ -170,13 +171,16 @@ def new_lanes(
     w = z((1 + 2 * n + nu + parameters + prepared, lanes))
     parts = np.split(w, np.cumsum([1, n, nu, parameters + prepared]))
     t, state, u, constants, dx = parts
-    angle = z((waves * nu, lanes))
+    angle, total = z((waves * nu, lanes)), z(n * lanes)
     arrays: list[Any] = [
         *(part.reshape(-1) for part in (w, t, state, dx)),
         u,
         constants,
         z((ALL, n * lanes)),
-        *z((5, n * lanes)),
+        *z((2, n * lanes)),
+        total,
+        total.reshape(n, lanes),
+        *z((2, n * lanes)),
         np.repeat(atol, lanes),
         z((4, n * lanes)),
         *z((5, lanes)),
@@ -202,15 +206,16 @@ def _copy(source, target):
 
 
 @_kernel
-def _weigh(row, method, k, total):
-    """Write the weighted sum of the slopes k [16, width] of a row of the tableau into total."""
-    weights, stages, counts, _ = method
-    if counts[row] == 0:
-        for q in range(len(total)):
-            total[q] = 0.0
-    for i in range(0, counts[row], BLOCK):
-        w0, w1 = weights[row, i], weights[row, i + 1]
-        w2, w3 = weights[row, i + 2], weights[row, i + 3]
+def _add_blocks(row, count, method, k, total):
+    """Write the sum of the first `count` weighted slopes k [16, width] of a row into total."""
+    weights, stages, _, _ = method
+    for i in range(0, count, BLOCK):
+        w0, w1, w2, w3 = (
+            weights[row, i],
+            weights[row, i + 1],
+            weights[row, i + 2],
+            weights[row, i + 3],
+        )
         k0, k1 = k[stages[row, i]], k[stages[row, i + 1]]
         k2, k3 = k[stages[row, i + 2]], k[stages[row, i + 3]]
         if i == 0:
@@ -222,10 +227,35 @@ def _weigh(row, method, k, total):
 
 
 @_kernel
-def _move(x, length, total, target):
-    """Write x + length total [width] into target."""
+def _weigh(row, method, k, total):
+    """Write the weighted sum of the slopes k [16, width] of a row of the tableau into total."""
+    _add_blocks(row, method[2][row], method, k, total)
+
+
+@_kernel
+def _point(row, method, k, x, length, total, target):
+    """Write the state x + length * weighted slopes [width] of a row of the tableau into target."""
+    weights, stages, counts, _ = method
+    last = counts[row] - BLOCK
+    if last < 0:
+        _copy(x, target)
+        return
+    if last > 0:
+        _add_blocks(row, last, method, k, total)
+    else:
+        for q in range(len(total)):
+            total[q] = 0.0
+    w0, w1, w2, w3 = (
+        weights[row, last],
+        weights[row, last + 1],
+        weights[row, last + 2],
+        weights[row, last + 3],
+    )
+    k0, k1 = k[stages[row, last]], k[stages[row, last + 1]]
+    k2, k3 = k[stages[row, last + 2]], k[stages[row, last + 3]]
     for q in range(len(target)):
-        target[q] = x[q] + length[q] * total[q]
+        slope = (w0 * k0[q] + w1 * k1[q]) + (w2 * k2[q] + w3 * k3[q])
+        target[q] = x[q] + length[q] * (total[q] + slope)
 
 
 @_kernel
@@ -293,16 +323,15 @@ def _scaled(atol, relative, x, new, length, error5, error3):
 
 
 @_kernel
-def _largest(lanes, error, norm, factor):
-    """Write the largest scaled error of every lane, and by what it changes the step."""
-    for lane in range(lanes):
-        norm[lane] = 0.0
-    for first in range(0, len(error), lanes):
-        part = error[first : first + lanes]
+def _largest(errors, norm, factor):
+    """Write the largest scaled error [n, lanes] of every lane, and by what it changes the step."""
+    _copy(errors[0], norm)
+    for a in range(1, len(errors)):
+        part = errors[a]
         for lane in range(len(part)):
-            largest, error_here = norm[lane], part[lane]
-            norm[lane] = largest if largest >= error_here else error_here
-    for lane in range(lanes):
+            largest, error = norm[lane], part[lane]
+            norm[lane] = largest if largest >= error else error
+    for lane in range(len(norm)):
         size = norm[lane] if norm[lane] > LEAST_ERROR else LEAST_ERROR
         factor[lane] = 0.9 / math.sqrt(math.sqrt(math.sqrt(size)))
 
@@ -348,7 +377,8 @@ def _plan(table, waves, runs, all_lanes):
             planned = all_lanes.plan[lane]
             planned = planned if planned < runs.limits[1] else runs.limits[1]
             all_lanes.ends[lane] = planned >= left
-            h[lane] = left if planned >= left else left / np.ceil(left / planned)
+            nearly = planned if 2.0 * planned <= left else 0.5 * left  # no tiny step is left over
+            h[lane] = left if planned >= left else nearly
             runs.steps[all_lanes.who[lane]] += 1
             _find_pieces(lane, table, waves, all_lanes)
     for first in range(0, width, lanes):
@@ -390,15 +420,13 @@ def _attempt(functions, method, moves, count, relative, all_lanes):
     """Try a step in every lane."""
     x, new, length, total = all_lanes.x, all_lanes.new, all_lanes.length, all_lanes.total
     for stage in range(STAGES):
-        _weigh(stage, method, all_lanes.k, total)
-        _move(x, length, total, all_lanes.state)
+        _point(stage, method, all_lanes.k, x, length, total, all_lanes.state)
         _slopes(stage, functions, method, moves, count, all_lanes)
-    _weigh(NEW, method, all_lanes.k, total)
-    _move(x, length, total, new)
+    _point(NEW, method, all_lanes.k, x, length, total, new)
     _weigh(ERROR_5, method, all_lanes.k, all_lanes.error5)
     _weigh(ERROR_3, method, all_lanes.k, total)
     _scaled(all_lanes.atol, relative, x, new, length, all_lanes.error5, total)
-    _largest(len(all_lanes.time), total, all_lanes.norm, all_lanes.factor)
+    _largest(all_lanes.errors, all_lanes.norm, all_lanes.factor)
 
 
 @_kernel
@@ -407,8 +435,15 @@ def _interpolate(functions, method, moves, count, all_lanes):
     _copy(all_lanes.new, all_lanes.state)
     _slopes(NEW, functions, method, moves, count, all_lanes)
     for stage in range(EXTRA, ALL):
-        _weigh(stage, method, all_lanes.k, all_lanes.total)
-        _move(all_lanes.x, all_lanes.length, all_lanes.total, all_lanes.state)
+        _point(
+            stage,
+            method,
+            all_lanes.k,
+            all_lanes.x,
+            all_lanes.length,
+            all_lanes.total,
+            all_lanes.state,
+        )
         _slopes(stage, functions, method, moves, count, all_lanes)
     for row in range(4):
         _weigh(DENSE + row, method, all_lanes.k, all_lanes.dense[row])
