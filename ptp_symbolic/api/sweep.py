@@ -32,6 +32,7 @@ from ptp_symbolic.platform.units import quantity
 FloatArray = NDArray[np.float64]
 
 PLAN, PARTS, WHOLE, BANDS = "plan.json", "trajectories", "trajectories.zarr", "bands"
+BAND_BYTES = 256_000_000  # of the values that quantiles are taken of at once
 BAND_TIMES = 201  # of the bands, between start and end
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 POINTING = "pointing error"
@@ -50,7 +51,7 @@ class SweepPlan:
     """What a sweep computes: the hash of the equations; `vary`: per name its distribution as text;
     number of samples, seed of the Sobol sequence; duration and interval in s; inputs, initial
     states, outputs, references of the line of sight by name; tolerances; runs per chunk; whether
-    whole trajectories are kept.
+    whole trajectories are kept, and values for bands.
     """
 
     model: str
@@ -67,7 +68,8 @@ class SweepPlan:
     rtol: float
     atol: float
     chunk: int
-    whole: bool
+    whole: bool = False
+    bands: bool = True
 
     @property
     def chunks(self) -> int:
@@ -152,7 +154,7 @@ def compute_part(machine: Machine, plan: SweepPlan, chunk: int, threads: int | N
         plan.times,
         dict(plan.inputs),
         parameters,
-        outputs=[*plan.signals, *plan.outputs],
+        outputs=[*(plan.signals if plan.whole or plan.bands else ()), *plan.outputs],
         rtol=plan.rtol,
         atol=plan.atol,
         threads=threads,
@@ -160,7 +162,8 @@ def compute_part(machine: Machine, plan: SweepPlan, chunk: int, threads: int | N
     )
     table = {"run": np.arange(first, last), **found.table()}
     table["seed"] = np.full(last - first, plan.seed)
-    return Part(table, dict(found.signals) if plan.whole else {}, _bands(plan, found))
+    bands = _bands(plan, found) if plan.bands else {}
+    return Part(table, dict(found.signals) if plan.whole else {}, bands)
 
 
 def _bands(plan: SweepPlan, found: Batch) -> dict[str, FloatArray]:
@@ -204,7 +207,8 @@ def refuse_plan(machine: Machine, plan: SweepPlan, out: Path) -> None:
             f" {need / 1e9:.3g} GB"
             f" of memory, and this machine has {have / 1e9:.3g} GB; take a smaller `chunk`."
         )
-    row = 8.0 * (len(plan.vary) + len(plan.outputs) + 4 + BAND_TIMES * (len(plan.signals) + 1))
+    row = 8.0 * (len(plan.vary) + len(plan.outputs) + 4)
+    row += 8.0 * BAND_TIMES * (len(plan.signals) + bool(plan.aim)) if plan.bands else 0.0
     row += 8.0 * k * len(plan.signals) if plan.whole else 0.0
     place = next(p for p in (out, *out.absolute().parents) if p.is_dir())
     free = shutil.disk_usage(place).free
@@ -268,8 +272,9 @@ def write_part(plan: SweepPlan, out: Path, chunk: int, part: Part) -> None:
     buffer, bands = io.BytesIO(), io.BytesIO()
     columns = {n: v.tolist() if v.dtype.kind in "OU" else v for n, v in part.table.items()}
     parquet.write_table(arrow.table(columns), buffer)
-    np.savez(bands, **part.bands)  # type: ignore[arg-type]
-    write_files_atomically(out / BANDS, {f"part-{chunk:06d}.npz": bands.getvalue()})
+    if part.bands:
+        np.savez(bands, **part.bands)  # type: ignore[arg-type]
+        write_files_atomically(out / BANDS, {f"part-{chunk:06d}.npz": bands.getvalue()})
     path = part_path(out, chunk)
     write_files_atomically(path.parent, {path.name: buffer.getvalue()})
 
@@ -358,13 +363,20 @@ def bands_of(plan: SweepPlan, out: Path) -> dict[str, FloatArray]:
     """Quantiles [QUANTILES, times] of every signal, and of the pointing error, over all runs that
     reached their end.
     """
+    if not plan.bands:
+        return {}
     files = [np.load(out / BANDS / f"part-{c:06d}.npz") for c in range(plan.chunks)]
     found = {}
     for name in files[0].files:
-        values = np.concatenate([file[name] for file in files])
-        values = values[np.isfinite(values).all(axis=1)]
-        if len(values):
-            found[name] = np.quantile(values, QUANTILES, axis=0)
+        k = files[0][name].shape[1]
+        blocks = -(-int(8.0 * plan.samples * k) // BAND_BYTES)
+        quantiles = []
+        for columns in np.array_split(np.arange(k), min(k, blocks)):
+            values = np.concatenate([file[name][:, columns] for file in files])
+            values = values[np.isfinite(values).all(axis=1)]
+            quantiles.append(np.quantile(values, QUANTILES, axis=0) if len(values) else None)
+        if all(each is not None for each in quantiles):
+            found[name] = np.concatenate(quantiles, axis=1)
     return found
 
 

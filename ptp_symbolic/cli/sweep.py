@@ -55,6 +55,7 @@ if TYPE_CHECKING:
 @click.option("--rtol", type=float, default=1e-6, show_default=True)
 @click.option("--atol", type=float, default=1e-8, show_default=True, help="rad.")
 @click.option("--whole", is_flag=True, help="Keep the signals of all runs (trajectories.zarr).")
+@click.option("--bands/--no-bands", default=True, help="Values for bands of signals; a plot.")
 @click.option("--chunk", type=int, help="Runs that are computed and written at once.")
 @click.option("--resume", is_flag=True, help="Go on with a sweep that was interrupted.")
 @click.option("--cluster", metavar="ADDRESS", help="Dask scheduler, such as tcp://host:8786.")
@@ -74,6 +75,7 @@ def sweep(
     rtol: float,
     atol: float,
     whole: bool,
+    bands: bool,
     chunk: int | None,
     resume: bool,
     cluster: str | None,
@@ -112,6 +114,7 @@ def sweep(
         atol,
         chunk or _rows(duration, every, len(machine.state_names) + len(shown)),
         whole,
+        bands,
     )
     with progress_line() as progress:
         run_sweep(machine, plan, out, resume, cluster, progress)
