@@ -28,7 +28,7 @@ def batches() -> list[Row]:
     """The payload beside loops, MuJoCo and diffrax; pan_drive beside a loop."""
     starts = np.linspace(0.2, 0.6, 2000)
     exact = _batch(starts, 1e-12)
-    rows = []
+    rows: list[Row] = []
     peers: list[tuple[str, Ends | None, int]] = [
         ("simulate_batch", lambda x: _batch(x, TOLERANCE), 2000),
         ("loop over simulate", _loop, 20),

@@ -366,7 +366,7 @@ def bands_of(plan: SweepPlan, out: Path) -> dict[str, FloatArray]:
     if not plan.bands:
         return {}
     files = [np.load(out / BANDS / f"part-{c:06d}.npz") for c in range(plan.chunks)]
-    found = {}
+    found: dict[str, FloatArray] = {}
     for name in files[0].files:
         k = files[0][name].shape[1]
         blocks = -(-int(8.0 * plan.samples * k) // BAND_BYTES)
@@ -374,8 +374,9 @@ def bands_of(plan: SweepPlan, out: Path) -> dict[str, FloatArray]:
         for columns in np.array_split(np.arange(k), min(k, blocks)):
             values = np.concatenate([file[name][:, columns] for file in files])
             values = values[np.isfinite(values).all(axis=1)]
-            quantiles.append(np.quantile(values, QUANTILES, axis=0) if len(values) else None)
-        if all(each is not None for each in quantiles):
+            if len(values):
+                quantiles.append(np.quantile(values, QUANTILES, axis=0))
+        if quantiles:
             found[name] = np.concatenate(quantiles, axis=1)
     return found
 
