@@ -1870,7 +1870,7 @@ SEARCH = (
     ("a_F_s_pan", 0.0, (0.0,), None, None),
     ("a_v_s_pan", 0.0, (0.0,), None, None),
     ("a_F_v_pan", 0.0, (0.0,), None, None),
-    ("gap_pan", 0.0, (0.005, 0.02), None, None),
+    ("gap_pan", 0.0, (0.005, 0.02, 0.05), None, None),
     ("k_shaft_pan", None, (100.0, 3000.0), None, None),
     ("d_shaft_pan", None, (1.0,), None, None),
 )
@@ -1922,4 +1922,4 @@ EFFECTS = (
      "linear actuator with lead screw and linkage",
      "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6", "", False),
 )
-# END sha256 92b49f2807a70052c9f5d44649137a263e6ae844c13143c47f389b63c07e6bee
+# END sha256 90ee20cd3df9c93f336bb7daf86e1cce3ac73b79af01ec9d33137980199f1aa4

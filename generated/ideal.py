@@ -312,6 +312,90 @@ def state_derivative(t, x, u, p, dx):
 vector_field, events, inverse_dynamics = mode_derivative, guards, equation_error
 
 
+@njit(error_model="numpy", nogil=True, forceinline=True)
+def lane_quarter(x):
+    """Return the multiple of pi/2 nearest to x: adding 1.5 * 2**52 rounds to a whole number."""
+    return (0.6366197723675814 * x + 6755399441055744.0) - 6755399441055744.0
+
+
+@njit(error_model="numpy", nogil=True, forceinline=True)
+def lane_polynomials(x, n):
+    """Return sine and cosine of x - n pi/2, which lies within pi/4."""
+    r = ((x - n * 1.5707963267341256) - n * 6.077100506303966e-11) - n * 2.0222662487959506e-21
+    z = r * r
+    sine = 2.7557313707070068e-06 + z * (-2.5050760253406863e-08 + z * 1.58969099521155e-10)
+    sine = 0.00833333333332249 + z * (-0.0001984126982985795 + z * sine)
+    sine = r + r * z * (-0.16666666666666632 + z * sine)
+    cosine = -2.7557314351390663e-07 + z * (2.087572321298175e-09 - z * 1.1359647557788195e-11)
+    cosine = 0.0416666666666666 + z * (
+        -0.001388888888887411 + z * (2.480158728947673e-05 + z * cosine)
+    )
+    half = 0.5 * z
+    least = 1.0 - half
+    return sine, least + (((1.0 - least) - half) + z * z * cosine)
+
+
+@njit(error_model="numpy", nogil=True, forceinline=True)
+def lane_sin(x):
+    """Return the sine of x in rad."""
+    n = lane_quarter(x)
+    sine, cosine = lane_polynomials(x, n)
+    turn = n - 4.0 * ((0.25 * n + 6755399441055744.0) - 6755399441055744.0)
+    value = cosine if abs(turn) == 1.0 else sine
+    return -value if (turn < 0.0) | (turn > 1.5) else value
+
+
+@njit(error_model="numpy", nogil=True, forceinline=True)
+def lane_cos(x):
+    """Return the cosine of x in rad."""
+    n = lane_quarter(x)
+    sine, cosine = lane_polynomials(x, n)
+    turn = n - 4.0 * ((0.25 * n + 6755399441055744.0) - 6755399441055744.0)
+    value = sine if abs(turn) == 1.0 else cosine
+    return -value if (turn > 0.5) | (turn < -1.5) else value
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def lane_sines(w):
+    """Replace every angle of w [k] in rad by its sine."""
+    for i in range(len(w)):
+        w[i] = lane_sin(w[i])
+
+
+LANES = 16
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def lane_derivative(w):
+    """Write the time derivatives of 16 states side by side into w.
+
+    w [20 * 16]: rows of 16 numbers, t, then x, u, p, c of prepare and dx.
+    """
+    for lane in range(16):
+        theta_tilt = w[32 + lane]
+        omega_pan = w[48 + lane]
+        omega_tilt = w[64 + lane]
+        tau_pan = w[80 + lane]
+        tau_tilt = w[96 + lane]
+        b_pan = w[176 + lane]
+        b_tilt = w[192 + lane]
+        inertia_pan_sin_sq_tilt = w[208 + lane]
+        inertia_pan = w[224 + lane]
+        inverse_mass_tilt = w[240 + lane]
+        cos_tilt = lane_cos(theta_tilt)
+        sin_tilt = lane_sin(theta_tilt)
+        inertia_pan_per_sin_tilt = inertia_pan_sin_sq_tilt * sin_tilt
+        coriolis = cos_tilt * inertia_pan_per_sin_tilt * omega_pan
+        force_pan = -b_pan * omega_pan - 2.0 * coriolis * omega_tilt + tau_pan
+        mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
+        force_tilt = -b_tilt * omega_tilt + coriolis * omega_pan + tau_tilt
+        w[256 + lane] = omega_pan
+        w[272 + lane] = omega_tilt
+        inverse_mass_pan = 1.0 / mass_pan
+        w[288 + lane] = force_pan * inverse_mass_pan
+        w[304 + lane] = force_tilt * inverse_mass_tilt
+
+
 # What follows is for fits and diagnoses; no function above uses it.
 # States without influence while these parameters are at their vanishing values.
 IDLE_STATES = ()
@@ -332,4 +416,4 @@ EFFECTS = (
      "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
      "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
 )
-# END sha256 d6e34ea0be76f629f2e3bf08f5016b0702cd83253e8d0ee795cf878a2d718ada
+# END sha256 e2772e7fc2797180f537aeb521b818bb7623c5f222fb0b0f8d7ea39663295d4c

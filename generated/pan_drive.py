@@ -517,7 +517,7 @@ SEARCH = (
     ("a_F_s_pan", 0.0, (0.0,), None, None),
     ("a_v_s_pan", 0.0, (0.0,), None, None),
     ("a_F_v_pan", 0.0, (0.0,), None, None),
-    ("gap_pan", 0.0, (0.005, 0.02), None, None),
+    ("gap_pan", 0.0, (0.005, 0.02, 0.05), None, None),
     ("k_shaft_pan", None, (100.0, 3000.0), None, None),
     ("d_shaft_pan", None, (1.0,), None, None),
 )
@@ -558,4 +558,4 @@ EFFECTS = (
     ("dc_motor", "pan", ("L_pan", "R_pan", "K_t_pan", "J_motor_pan", "N_pan"), (), (),
      "geared DC motor", "thesis Eq. 3.10, Eq. 3.11 with erratum 8", "", False),
 )
-# END sha256 85881d31da7851af62abb4480eed4785f908ea4d87e8bc01d69e513439fc4fb4
+# END sha256 a3c20114bce1de6d61bd6f0f064a88f9a57489fabb8b8a2b1838239651801a7a

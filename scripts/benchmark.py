@@ -13,6 +13,7 @@ the best of several. How to read the table:
   every peer run at the loosest tolerance of a list that stays below 1e-8 (the error of a peer is
   that at its own steps); a peer keeps no outputs, and its ratio is to "final".
 - "log of 50,000 rows": a CSV file read and checked, beside numpy's loadtxt, which only reads it.
+- "batch": trajectories per second on one core, and how many times as many as each peer.
 - "sensitivities": time with six parameters over time without, and their largest relative error.
 
 `--all` adds the slower peers; `scripts/work_precision.py` draws error over time for all of them.
@@ -28,6 +29,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+from batch_peers import batches
 from event_peers import simulate_with_scipy
 from log_reading import log_reading
 from rich.console import Console
@@ -263,6 +265,7 @@ def main() -> None:
         *drive_cases(arguments.all),
         *sampled_controller(),
         *sensitivities(),
+        *batches(),
         *log_reading(),
     ]
     if arguments.json:

@@ -17,6 +17,7 @@ FOLDER = "_generated"
 GROUPS = {
     "Machines": ("load", "Machine", "Model", "Jacobian", "Linearization", "inverse_dynamics"),
     "Simulation": ("simulate", "Run", "Event", "sensitivity", "Sensitivities"),
+    "Many runs": ("simulate_batch", "Batch", "batch_function"),
     "Logs": ("read_log", "Log", "sample"),
     "Fit and diagnosis": ("fit", "FitResult", "Estimate", "diagnose", "Diagnosis"),
     "Experiments": ("experiment", "Experiment", "friction_map", "FrictionMap"),

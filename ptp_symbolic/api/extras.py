@@ -6,11 +6,13 @@ from types import ModuleType
 from ptp_symbolic.errors import InputError
 
 
-def extra_library(name: str) -> ModuleType:
-    """The library `name`. Raises InputError, with what to run, where it is not installed."""
+def extra_library(name: str, extra: str = "python") -> ModuleType:
+    """The library `name` of an `extra` of this package. Raises InputError, with what to run, where
+    it is not installed.
+    """
     try:
         return importlib.import_module(name)
     except ImportError as error:
         raise InputError(
-            f"{name} is not installed; run pip install 'ptp-symbolic[python]'."
+            f"{name} is not installed; run pip install 'ptp-symbolic[{extra}]'."
         ) from error

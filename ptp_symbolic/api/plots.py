@@ -1,5 +1,6 @@
 """Figures of runs, logs and fits, for a notebook or a file."""
 
+import io
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -13,6 +14,7 @@ from ptp_symbolic.report.figures import AFTER, BEFORE, BORDER, MEASURED, STYLE
 
 FloatArray = NDArray[np.float64]
 
+DOTS_PER_INCH = 150
 WIDTH, PANEL, EDGE = 9.0, 1.8, 0.6  # inches
 
 
@@ -59,6 +61,31 @@ def measured_and_simulated(
             column[-1].set_xlabel("time [s]")
         grid[0, 0].legend(loc="upper right", frameon=False)
     return figure
+
+
+def bands_figure(
+    time: FloatArray, bands: Mapping[str, FloatArray], units: Mapping[str, str]
+) -> Figure:
+    """A panel per signal with its median and the ranges of 50 % and 90 % of the runs, of quantiles
+    [5, k] (5, 25, 50, 75, 95 %) over `time` [k] in s.
+    """
+    with matplotlib.rc_context(STYLE):
+        figure, grid = _sheet(len(bands))
+        for axes, (name, (p5, p25, median, p75, p95)) in zip(grid, bands.items(), strict=True):
+            axes.fill_between(time, p5, p95, color=AFTER, alpha=0.2, linewidth=0, label="90 %")
+            axes.fill_between(time, p25, p75, color=AFTER, alpha=0.35, linewidth=0, label="50 %")
+            axes.plot(time, median, color=AFTER, linewidth=1.0, label="median")
+            axes.set_ylabel(f"{name} [{units[name]}]")
+        grid[0].legend(loc="upper right", frameon=False)
+        grid[-1].set_xlabel("time [s]")
+    return figure
+
+
+def png_of(figure: Figure) -> bytes:
+    """A figure as a PNG file."""
+    file = io.BytesIO()
+    figure.savefig(file, format="png", dpi=DOTS_PER_INCH, metadata={"Software": None})
+    return file.getvalue()
 
 
 def _draw(axes: Axes, time: FloatArray, signal: Mapping[str, Any], hidden: Sequence[str]) -> None:

@@ -15,6 +15,7 @@ from ptp_symbolic.cli.new import new, schema
 from ptp_symbolic.cli.regenerate import regenerate
 from ptp_symbolic.cli.report import report
 from ptp_symbolic.cli.simulate import sensitivity, simulate
+from ptp_symbolic.cli.sweep import sweep
 from ptp_symbolic.errors import InputError
 
 
@@ -30,6 +31,7 @@ for command in (
     regenerate,
     simulate,
     sensitivity,
+    sweep,
     check,
     friction_map,
     fit,

@@ -5,7 +5,7 @@ import textwrap
 from collections.abc import Mapping, Sequence
 
 from ptp_symbolic.symbolic.derivation.equations import Equations
-from ptp_symbolic.symbolic.program.kernel import GIVEN, Kernel, Part, used_names
+from ptp_symbolic.symbolic.program.kernel import GIVEN, Entry, Kernel, Part, used_names
 from ptp_symbolic.symbolic.program.program import Program, program
 from ptp_symbolic.symbolic.program.term_names import vocabulary
 from ptp_symbolic.symbolic.targets.numba.docstring import docstring
@@ -17,7 +17,10 @@ from ptp_symbolic.symbolic.targets.numba.literals import (
     unpacking_text,
 )
 from ptp_symbolic.symbolic.targets.numba.metadata import metadata_text, search_text
-from ptp_symbolic.symbolic.targets.numba.mode_functions import mode_functions_text
+from ptp_symbolic.symbolic.targets.numba.mode_functions import (
+    lane_functions_text,
+    mode_functions_text,
+)
 from ptp_symbolic.symbolic.targets.printing import Language
 
 NUMBA = Language(
@@ -38,6 +41,11 @@ MATRICES = {
     "gx": "rows as g of guards, columns as STATE_NAMES",
     "gp": "rows as g of guards, columns as PARAMETERS",
 }
+LANES = 16  # states side by side: fewer are unrolled before LLVM looks for vectors
+IN_LANES = Language(
+    "numba, several states at once",
+    {**NUMBA.operations, "sin": "lane_sin({0})", "cos": "lane_cos({0})"},
+)
 SEAL = "# END sha256 "
 INNER_WIDTH = WIDTH - 4
 ALLOCATES = '@njit(cache=True, error_model="numpy", nogil=True)\n'
@@ -73,6 +81,9 @@ def written(whole: Program) -> str:
     ]
     body = "\n\n\n".join(functions)
     digest = hashlib.sha256(body.encode()).hexdigest()[:16]
+    in_lanes = whole.kernel("prepared_derivative")
+    if in_lanes is not None and not whole.has_modes and whole.kernel("sample") is None:
+        body = "\n\n\n".join([body, lane_functions_text(), _lane_function(in_lanes)])
     opening = docstring(whole.computed, whole.operations)
     head = metadata_text(whole.equations, digest, opening, len(whole.vectors.c))
     return sealed(f"{head}\n\n\n{body}\n\n\n{search_text(whole.equations)}\n")
@@ -162,6 +173,39 @@ def _entries(kernel: Kernel, array: str, words: Mapping[str, str]) -> list[str]:
     count = kernel.vectors.shape(array)[0] if array in kernel.vectors.rows else 0
     names = [words.get(f"{array}[{k}]", "") for k in range(count)]
     return names if all(names) else []
+
+
+def _lane_function(kernel: Kernel) -> str:
+    """The function of LANES states side by side, all in one array: LLVM sees that what is written
+    is not what is read.
+    """
+    first, rows = {"t": 0}, 1
+    for array in (*"xupc", "dx"):
+        first[array] = rows
+        rows += kernel.vectors.shape(array)[0]
+    places = [(name, array, index) for name, array, index in kernel.unpacked]
+    if "t" in used_names(kernel.lines):
+        places.insert(0, ("t", "t", 0))
+    lines = [f"{name} = {_lane(first[array] + index)}" for name, array, index in places]
+    for assignment, (name, expression) in zip(kernel.body, kernel.lines, strict=True):
+        target = assignment.target
+        place = _lane(first["dx"] + target.indices[0]) if isinstance(target, Entry) else name
+        lines.append(assignment_text(place, IN_LANES.expression(expression), WIDTH - 8))
+    doc = (
+        f'"""Write the time derivatives of {LANES} states side by side into w.\n\n'
+        f"w [{rows} * {LANES}]: rows of {LANES} numbers, t, then x, u, p, c of prepare and dx.\n"
+        '"""'
+    )
+    loop = f"for lane in range({LANES}):\n" + textwrap.indent("\n".join(lines), "    ")
+    return (
+        f"LANES = {LANES}\n\n\n{COMPILED}"
+        + "def lane_derivative(w):\n"
+        + textwrap.indent(f"{doc}\n{loop}", "    ")
+    )
+
+
+def _lane(row: int) -> str:
+    return f"w[{row * LANES} + lane]" if row else "w[lane]"
 
 
 def _described(kernel: Kernel, argument: str) -> str:

@@ -3,7 +3,7 @@
 import inspect
 from types import ModuleType
 
-from ptp_symbolic.symbolic.targets.numba.mode_functions import rigid, smooth, sprung
+from ptp_symbolic.symbolic.targets.numba.mode_functions import lanes, rigid, smooth, sprung
 
 MARK = "# copied from here on\n"
 
@@ -14,3 +14,8 @@ def mode_functions_text(has_modes: bool, has_rigid_contacts: bool) -> str:
     if has_modes:
         chosen = rigid if has_rigid_contacts else sprung
     return inspect.getsource(chosen).partition(MARK)[2].strip()
+
+
+def lane_functions_text() -> str:
+    """The functions that a derivative of several states at once calls, as text."""
+    return inspect.getsource(lanes).partition(MARK)[2].strip()

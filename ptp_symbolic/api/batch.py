@@ -1,0 +1,455 @@
+"""Thousands of runs of one machine at once, and a machine as a function of arrays."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ptp_symbolic.api.extras import extra_library
+from ptp_symbolic.api.inputs import Input, Inputs, input_signals
+from ptp_symbolic.api.machine import Machine, Source, load, machine_of
+from ptp_symbolic.api.reductions import Reduction, is_reduction, reductions
+from ptp_symbolic.api.simulation import STATES
+from ptp_symbolic.api.values import parameter_values, state_vector
+from ptp_symbolic.errors import InputError, unknown
+from ptp_symbolic.numeric.simulation import lanes
+from ptp_symbolic.numeric.simulation.batch import (
+    IMPOSSIBLE,
+    BatchProblem,
+    integrate_batch,
+    outputs_along,
+)
+from ptp_symbolic.numeric.simulation.integration import METHODS, checked_accuracy
+from ptp_symbolic.numeric.simulation.kernels.records import (
+    CHATTERING,
+    DIVERGED,
+    DONE,
+    EXHAUSTED,
+    OUTSIDE,
+    STIFF,
+    TOO_FAST,
+    UNDECIDED,
+)
+from ptp_symbolic.numeric.simulation.run import chosen_method, output_times
+from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, constant
+from ptp_symbolic.platform.units import quantity
+
+FloatArray = NDArray[np.float64]
+Column = float | str | ArrayLike
+Columns = Mapping[str, Column]
+
+FINAL, ALL = "final", "all"
+WORDS = {
+    DONE: "done",
+    IMPOSSIBLE: "impossible",
+    DIVERGED: "diverged",
+    CHATTERING: "chattering",
+    UNDECIDED: "undecided",
+    OUTSIDE: "outside",
+    EXHAUSTED: "exhausted",
+    TOO_FAST: "too fast",
+    STIFF: "stiff",
+}
+CHUNK_BYTES = 64e6  # of states that are in memory beside the results
+SHARE = 0.5  # of the memory of the machine that results may take
+LARGEST_STEP = 0.1  # s, as `simulate` has it
+LARGEST_SMOOTH_STEP = 1.0  # s: nothing is looked for inside the steps of a smooth model
+
+
+@dataclass(frozen=True, eq=False)
+class Batch:
+    """Results of n runs of `model` at the times `t` [k] in s.
+
+    `batch[name]` is a number per run [n] (a final state, a reduction) or a signal [n, k], in the
+    unit `batch.units[name]`; NaN where a run failed. `status` [n] says "done" or why not, `reasons`
+    the whole sentence by number of the run; `seeds` [n] are those of the noise, `steps` [n] those
+    that were tried, `given` [n] the parameters and initial states that differ between runs.
+    """
+
+    model: Machine
+    t: FloatArray
+    numbers: Mapping[str, FloatArray]
+    signals: Mapping[str, FloatArray]
+    units: Mapping[str, str]
+    given: Mapping[str, FloatArray]
+    status: NDArray[np.str_]
+    reasons: Mapping[int, str]
+    seeds: NDArray[np.int64]
+    steps: NDArray[np.int64]
+
+    @property
+    def ok(self) -> NDArray[np.bool_]:
+        """Whether every run [n] reached its end."""
+        return self.status == WORDS[DONE]
+
+    def __len__(self) -> int:
+        return len(self.status)
+
+    def __getitem__(self, name: str) -> FloatArray:
+        """Numbers [n] or signals [n, k]. Raises KeyError, which lists the names, for another."""
+        for values in (self.numbers, self.signals):
+            if name in values:
+                return values[name]
+        raise KeyError(str(unknown("output", name, (*self.numbers, *self.signals))))
+
+    def __repr__(self) -> str:
+        failed = int((~self.ok).sum())
+        return (
+            f"Batch of '{self.model.name}': {len(self)} runs from {self.t[0]:g} to {self.t[-1]:g} s"
+            f", {failed} failed; {', '.join((*self.numbers, *self.signals))}"
+        )
+
+    def table(self) -> dict[str, NDArray[Any]]:
+        """One row per run: what was given, the numbers, status, seed, steps and reason."""
+        reasons = np.array([self.reasons.get(b, "") for b in range(len(self))], dtype=object)
+        own = {"status": self.status, "seed": self.seeds, "steps": self.steps, "reason": reasons}
+        return {**self.given, **self.numbers, **own}
+
+    def to_pandas(self) -> Any:
+        """`table` as a pandas DataFrame. Raises InputError where pandas is not installed."""
+        return extra_library("pandas").DataFrame(self.table())
+
+    def to_xarray(self) -> Any:
+        """An xarray Dataset over `run` and `time` in s, with the units as attributes.
+
+        Raises InputError where xarray is not installed.
+        """
+        xarray = extra_library("xarray")
+        unit = {**self.model.units, **self.units}
+        columns: dict[str, Any] = {
+            name: ("run", values, {"units": unit[name]} if name in unit else {})
+            for name, values in self.table().items()
+        }
+        columns["reason"] = ("run", np.array(self.table()["reason"], dtype=np.str_), {})
+        taken = {n: f"initial {n}" if n in self.signals else n for n in columns}
+        data = {taken[name]: column for name, column in columns.items()}
+        data |= {n: (("run", "time"), v, {"units": self.units[n]}) for n, v in self.signals.items()}
+        return xarray.Dataset(data, coords={"time": ("time", self.t, {"units": "s"})})
+
+
+def simulate_batch(
+    model: Source,
+    times: float | ArrayLike,
+    inputs: Inputs | Sequence[Mapping[str, Input]] | None = None,
+    parameters: Columns | None = None,
+    initial: Columns | None = None,
+    seeds: int | ArrayLike | None = None,
+    outputs: str | Sequence[str] = FINAL,
+    noise: Mapping[str, float | str] | None = None,
+    rtol: float = 1e-8,
+    atol: float = 1e-9,
+    largest_step: float | None = None,
+    method: str | None = None,
+    threads: int | None = None,
+    *,
+    x0: Columns | None = None,
+    **values: Any,
+) -> Batch:
+    """Simulate a machine n times, on all cores: `parameters` and `initial` states (`x0`) by name,
+    each one value for all runs or an array [n], in SI or as texts with units.
+
+    `model`, `times`, `inputs` and what follows by name are as `simulate` takes them; `inputs` may
+    also be a list of n mappings, one per run. `outputs` is "final" (the states at the end), "all"
+    (all states at the times), or a list of signals at the times and of reductions, such as
+    "largest(theta_pan)", "rms(omega_pan)", "final(theta_tilt)", "settling_time(theta_pan; 1 mrad)",
+    "rms_error(theta_pan; step:0.3@0.5)", "pointing_error(theta_pan = 0.3; theta_tilt = 0)".
+    `noise` adds white noise of a standard deviation to signals, of a generator of its own per run;
+    `seeds` is the first seed (0), or all of them [n].
+
+    A run equals that of `simulate` without ledger: for smooth models within the tolerances, bit for
+    bit for all others. A run that fails leaves NaN and its reason, and the others finish. Raises
+    InputError for what is wrong for all runs, and for results that do not fit into memory.
+
+    >>> import ptp_symbolic as ptp
+    >>> batch = ptp.simulate_batch("ideal", 1.0, tau_pan=0.1, J_pan=[5e-4, -1.0, 6e-4])
+    >>> batch.status.tolist()
+    ['done', 'impossible', 'done']
+    """
+    machine = load(model)
+    if x0 is not None and initial is not None:
+        raise InputError("`x0` and `initial` are both the state at the start; give one of them.")
+    t = output_times(times)
+    given, drives = _drives(machine, inputs, values, t)
+    columns = {**(parameters or {}), **given}
+    start = (initial if x0 is None else x0) or {}
+    count = _count(columns, start, seeds, drives)
+    wanted = _Wanted.of(machine, outputs, noise or {}, t)
+    wanted.refuse_too_large(count, len(t))
+    p, p_given = _matrix(machine, columns, machine.parameter_names, "Parameter", count)
+    x, x_given = _matrix(machine, start, machine.state_names, "Initial state", count)
+    chosen = None if method is None else chosen_method(machine, method, METHODS)
+    accuracy = checked_accuracy(machine, rtol, atol, largest_step or LARGEST_STEP)
+    if largest_step is None and lanes.suits(machine, chosen, accuracy):
+        accuracy = replace(accuracy, largest_step=LARGEST_SMOOTH_STEP)
+    kinds = [[kind.get(n, constant(0.0)) for n in machine.input_names] for kind in drives]
+    grid = t if wanted.grid else t[[0, -1]]
+    problem = BatchProblem(machine, grid, kinds, chosen, accuracy)
+    drive = np.zeros(count, np.int64) if len(kinds) == 1 else np.arange(count)
+    result = _run(problem, wanted, p, x, drive, _seeds(seeds, count), threads)
+    return replace(result, t=t, given={**p_given, **x_given})
+
+
+@dataclass(frozen=True, eq=False)
+class _Wanted:
+    """What is kept of every run: names of final states, signals, reductions; the noise by signal,
+    its standard deviation in SI; whether the times between start and end are needed.
+    """
+
+    final: tuple[str, ...]
+    signals: tuple[str, ...]
+    reductions: tuple[Reduction, ...]
+    noise: Mapping[str, float]
+    grid: bool
+
+    @staticmethod
+    def of(
+        machine: Machine, outputs: str | Sequence[str], noise: Mapping[str, Any], t: FloatArray
+    ) -> _Wanted:
+        """What `outputs` ask for. Raises InputError for unknown names."""
+        known = tuple(dict.fromkeys((*machine.state_names, *machine.output_names)))
+        for name in noise:
+            if name not in known:
+                raise unknown("signal", name, known)
+        sd = {n: quantity(v, machine.units[n], f"Noise of '{n}'") for n, v in noise.items()}
+        if isinstance(outputs, str):
+            if outputs == FINAL:
+                return _Wanted(machine.state_names, (), (), sd, False)
+            outputs = list(machine.state_names) if outputs in (ALL, STATES) else [outputs]
+        signals = tuple(text for text in outputs if not is_reduction(text))
+        for name in signals:
+            if name not in known:
+                raise unknown("output", name, ("final", "all", *known), "; or a reduction")
+        found = reductions(machine, [text for text in outputs if is_reduction(text)], known, t)
+        grid = bool(signals) or any(each.kind != FINAL for each in found)
+        return _Wanted((), signals, tuple(found), sd, grid)
+
+    @property
+    def read(self) -> tuple[str, ...]:
+        """Names of all signals that are read."""
+        of_reductions = (name for each in self.reductions for name in each.signals)
+        return tuple(dict.fromkeys((*self.final, *self.signals, *of_reductions)))
+
+    def refuse_too_large(self, count: int, k: int) -> None:
+        """Raise InputError where the results do not fit into memory."""
+        need = 8.0 * count * (len(self.signals) * k + len(self.final) + len(self.reductions))
+        have = machine_memory()
+        if need > SHARE * have:
+            raise InputError(
+                f"{count} runs with {len(self.signals)} signals at {k} times need"
+                f" {need / 1e9:.3g} GB, and this machine has {have / 1e9:.3g} GB; ask for"
+                " reductions or fewer times, or let `ptp-symbolic sweep` write them to disk."
+            )
+
+
+def machine_memory() -> float:
+    """Memory of this machine in bytes; without bound where the system does not say."""
+    try:
+        return float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+    except (AttributeError, ValueError, OSError):
+        return np.inf
+
+
+def _run(
+    problem: BatchProblem,
+    wanted: _Wanted,
+    p: FloatArray,
+    x: FloatArray,
+    drive: NDArray[np.int64],
+    seeds: NDArray[np.int64],
+    threads: int | None,
+) -> Batch:
+    """All runs, chunk by chunk: only what is wanted is kept."""
+    machine, count, k = machine_of(problem.model), len(p), len(problem.times)
+    numbers = {name: np.empty(count) for name in wanted.final}
+    numbers |= {each.text: np.empty(count) for each in wanted.reductions}
+    signals = {name: np.empty((count, k)) for name in wanted.signals}
+    status, steps = np.empty(count, np.int64), np.empty(count, np.int64)
+    reasons: dict[int, str] = {}
+    rows = max(lanes_together(machine), int(CHUNK_BYTES / (8.0 * k * x.shape[1])))
+    for first in range(0, count, rows):
+        part = slice(first, min(first + rows, count))
+        found = integrate_batch(problem, p[part], x[part], drive[part], threads)
+        status[part], steps[part] = found.status, found.steps
+        reasons |= {first + b: why for b, why in enumerate(found.reasons) if why}
+        own = _signals(problem, wanted, p[part], drive[part], found.x, seeds[part])
+        for name in wanted.final:
+            numbers[name][part] = own[name][:, -1]
+        for each in wanted.reductions:
+            numbers[each.text][part] = each(problem.times, own)
+        for name in wanted.signals:
+            signals[name][part] = own[name]
+    units = {name: machine.units[name] for name in (*wanted.final, *wanted.signals)}
+    units |= {each.text: each.unit for each in wanted.reductions}
+    words = np.array([WORDS[int(each)] for each in status])
+    return Batch(machine, problem.times, numbers, signals, units, {}, words, reasons, seeds, steps)
+
+
+def lanes_together(machine: Machine) -> int:
+    """Runs that are integrated side by side."""
+    return int(vars(machine.module).get("LANES", 1))
+
+
+def _signals(
+    problem: BatchProblem,
+    wanted: _Wanted,
+    p: FloatArray,
+    drive: NDArray[np.int64],
+    x: FloatArray,
+    seeds: NDArray[np.int64],
+) -> dict[str, FloatArray]:
+    """The signals [b, k] that are read, with their noise."""
+    machine = problem.model
+    found = {
+        n: x[:, :, machine.state_names.index(n)] for n in wanted.read if n in machine.state_names
+    }
+    rest = [name for name in wanted.read if name not in found]
+    if rest:
+        y = outputs_along(problem, p, drive, x)
+        found |= {name: y[:, :, machine.output_names.index(name)] for name in rest}
+    noisy = [name for name in wanted.read if name in wanted.noise]
+    found |= {name: found[name].copy() for name in noisy}
+    for b, seed in enumerate(seeds if noisy else ()):
+        generator = np.random.default_rng(int(seed))
+        for name in noisy:
+            found[name][b] += wanted.noise[name] * generator.standard_normal(x.shape[1])
+    return found
+
+
+def _drives(
+    machine: Machine,
+    inputs: Inputs | Sequence[Mapping[str, Input]] | None,
+    values: Mapping[str, Any],
+    t: FloatArray,
+) -> tuple[dict[str, Any], list[dict[str, InputSignal]]]:
+    """Parameters among `values`, and the inputs of every kind of run: one, or one per run."""
+    known = (*machine.input_names, *machine.parameter_names)
+    for name in values:
+        if name not in known:
+            raise unknown("input, parameter or argument", name, known)
+    own = {n: v for n, v in values.items() if n in machine.parameter_names}
+    common = input_signals(machine, {n: v for n, v in values.items() if n not in own}, t)
+    several: Sequence[Any] = inputs if isinstance(inputs, list | tuple) else [inputs]
+    kinds = [input_signals(machine, each, t) for each in several]
+    return own, [{**common, **kind} for kind in kinds]
+
+
+def _count(
+    columns: Columns, start: Columns, seeds: Any, drives: Sequence[Mapping[str, Any]]
+) -> int:
+    """Number of runs. Raises InputError where arrays have different lengths."""
+    lengths = {
+        f"'{n}'": np.shape(v)[0] for n, v in (*columns.items(), *start.items()) if np.ndim(v)
+    }
+    if np.ndim(seeds):
+        lengths["seeds"] = np.shape(seeds)[0]
+    if len(drives) > 1:
+        lengths["inputs"] = len(drives)
+    if len(set(lengths.values())) > 1:
+        said = ", ".join(f"{name} has {length}" for name, length in lengths.items())
+        raise InputError(f"Values of different numbers of runs: {said}; give as many of each.")
+    return next(iter(lengths.values()), 1)
+
+
+def _matrix(
+    machine: Machine, columns: Columns, names: Sequence[str], what: str, count: int
+) -> tuple[FloatArray, dict[str, FloatArray]]:
+    """Values [count, names] in SI, and the columns that differ between runs.
+
+    Raises InputError for unknown names and for what is no quantity, out of bounds for all.
+    """
+    for name in columns:
+        if name not in names:
+            raise unknown(what.lower().split()[-1], name, names)
+    same: dict[str, Any] = {n: v for n, v in columns.items() if not np.ndim(v)}
+    if what == "Parameter":
+        common = machine.parameter_vector(parameter_values(machine, same))
+    else:
+        common = state_vector(machine, same, what)
+    matrix, varied = np.repeat(common[None], count, 0), {}
+    for name, column in columns.items():
+        if not np.ndim(column):
+            continue
+        array = np.asarray(column)
+        if array.ndim != 1:
+            raise InputError(f"{what} '{name}' has shape {array.shape}; give one value per run.")
+        if array.dtype.kind not in "fiu":
+            said = f"{what} '{name}'"
+            array = np.array([quantity(v, machine.units[name], said) for v in array.tolist()])
+        matrix[:, names.index(name)] = array
+        varied[name] = matrix[:, names.index(name)]
+    return np.ascontiguousarray(matrix), varied
+
+
+def _seeds(seeds: Any, count: int) -> NDArray[np.int64]:
+    """A seed per run. Raises InputError for one that is negative or no whole number."""
+    array = np.asarray(0 if seeds is None else seeds)
+    if array.dtype.kind not in "iu" or np.any(array < 0):
+        raise InputError(f"Seeds {seeds!r}: give whole numbers of zero or more.")
+    return (array + np.arange(count) if array.ndim == 0 else array).astype(np.int64)
+
+
+def batch_function(
+    model: Source,
+    inputs: Sequence[str],
+    outputs: str | Sequence[str] = FINAL,
+    times: float | ArrayLike = 10.0,
+    **common: Any,
+) -> Callable[[ArrayLike], FloatArray]:
+    """A machine as a function f(X [n, p]) -> Y [n, q], as SALib, openturns, chaospy and SciPy take.
+
+    The columns of X are the parameters and initial states named by `inputs`, in SI; those of Y are
+    the final states or the reductions of `outputs` (see `simulate_batch`, which also takes what is
+    `common` to all runs: signals and parameters by name, `parameters`, `x0`, tolerances). Rows of
+    runs that fail are NaN. Raises InputError as `simulate_batch`, and for outputs that are no
+    numbers.
+
+    >>> import ptp_symbolic as ptp
+    >>> f = ptp.batch_function("ideal", ["J_pan", "b_pan"], ["final(omega_pan)"], 1.0, tau_pan=0.1)
+    >>> f([[5e-4, 0.1], [5e-4, 0.2]]).round(3)
+    array([[1. ],
+           [0.5]])
+    """
+    machine, names = load(model), tuple(inputs)
+    known = (*machine.parameter_names, *machine.state_names)
+    for name in names:
+        if name not in known:
+            raise unknown("parameter or state", name, known)
+    wanted = _Wanted.of(machine, outputs, {}, output_times(times))
+    if wanted.signals:
+        raise InputError(
+            f"Output '{wanted.signals[0]}' is a signal; give numbers, such as"
+            f" 'final({wanted.signals[0]})' or 'largest({wanted.signals[0]})'."
+        )
+    given_start = dict(common.pop("x0", None) or common.pop("initial", None) or {})
+    given_parameters = dict(common.pop("parameters", None) or {})
+
+    def evaluate(points: ArrayLike) -> FloatArray:
+        """The outputs [n, q] at points [n, p], or [q] at one point [p]."""
+        table = np.asarray(points, dtype=np.float64)
+        if table.ndim not in (1, 2) or table.shape[-1] != len(names):
+            raise InputError(
+                f"Points of shape {table.shape}; give [n, {len(names)}]: {', '.join(names)}."
+            )
+        rows = np.atleast_2d(table)
+        columns = dict(zip(names, rows.T, strict=True))
+        states = {n: v for n, v in columns.items() if n in machine.state_names}
+        found = simulate_batch(
+            machine,
+            times,
+            parameters={
+                **given_parameters,
+                **{n: v for n, v in columns.items() if n not in states},
+            },
+            x0={**given_start, **states},
+            outputs=outputs,
+            **common,
+        )
+        values = np.stack(list(found.numbers.values()), axis=1)
+        return values if table.ndim == 2 else values[0]
+
+    return evaluate
