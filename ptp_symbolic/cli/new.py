@@ -25,12 +25,30 @@ FILES = ("platform", "diagnosis")
     show_default=True,
     help="What drives it: the voltage of a DC motor, or a torque (force).",
 )
-def new(file: Path, machine: str, drive: str) -> None:
+@click.option(
+    "--from",
+    "robot",
+    type=Path,
+    help="Robot in URDF or MJCF to lump into a platform, in place of --machine and --drive.",
+)
+@click.option("--pan", help="Joint of the robot that is the pan axis.")
+@click.option("--tilt", help="Joint of the robot that is the tilt axis.")
+@click.option("--freeze", multiple=True, help="Joint of the robot to hold as drawn; repeatable.")
+def new(
+    file: Path,
+    machine: str,
+    drive: str,
+    robot: Path | None,
+    pan: str | None,
+    tilt: str | None,
+    freeze: tuple[str, ...],
+) -> None:
     """Write a commented platform FILE (.toml) to start from, and beside it the schema by which
     editors complete and check it.
     """
     from ptp_symbolic.atomic_files import check_writable, write_files_atomically
     from ptp_symbolic.errors import InputError
+    from ptp_symbolic.formats.robots.imported import read_robot
     from ptp_symbolic.formats.starting_file import SCHEMA_NAME, starting_text
     from ptp_symbolic.platform import fields
 
@@ -46,9 +64,18 @@ def new(file: Path, machine: str, drive: str) -> None:
             " another folder."
         )
     check_writable(file.parent)
-    text = starting_text(name, machine, drive)
+    if robot is None:
+        if pan is not None or tilt is not None or freeze:
+            raise InputError("--pan, --tilt and --freeze name joints of a robot; add --from FILE.")
+        text = starting_text(name, machine, drive)
+        done = f"fill in every nan, then run: ptp-symbolic check --platform {file} LOG..."
+    else:
+        imported = read_robot(robot, pan, tilt, freeze, name)
+        text, done = imported.text, f"try ptp-symbolic simulate --platform {file} --out run"
+        for line in (*imported.notes, *(f"not in the file: {lost}" for lost in imported.lost)):
+            click.echo(line)
     write_files_atomically(file.parent, {SCHEMA_NAME: schema, file.name: text})
-    click.echo(f"{file}: fill in every nan, then run: ptp-symbolic check --platform {file} LOG...")
+    click.echo(f"{file}: {done}")
 
 
 @click.command()
