@@ -70,6 +70,9 @@ def new(
         text = starting_text(name, machine, drive)
         done = f"fill in every nan, then run: ptp-symbolic check --platform {file} LOG..."
     else:
+        given = click.get_current_context().get_parameter_source
+        if click.core.ParameterSource.COMMANDLINE in (given("machine"), given("drive")):
+            raise InputError("--machine and --drive: a robot has its own axes; leave them out.")
         imported = read_robot(robot, pan, tilt, freeze, name)
         text, done = imported.text, f"try ptp-symbolic simulate --platform {file} --out run"
         for line in (*imported.notes, *(f"not in the file: {lost}" for lost in imported.lost)):

@@ -32,10 +32,10 @@ RIGID = {
     "k1_cable_pan": ("N m/rad", 0.8),
     "theta0_cable_pan": ("rad", 0.2),
     "beta_base": ("rad", 0.07),
-    "phi_base": ("rad", 0.9),
-    "J_xy_payload": ("kg m^2", 0.001),
-    "J_xz_payload": ("kg m^2", -0.0007),
-    "J_yz_payload": ("kg m^2", 0.0004),
+    "alpha_base": ("rad", 0.9),
+    "J_xy_tilt": ("kg m^2", 0.001),
+    "J_xz_tilt": ("kg m^2", -0.0007),
+    "J_yz_tilt": ("kg m^2", 0.0004),
 }
 
 

@@ -75,7 +75,9 @@ def seen(robot: Robot, named: Mapping[str, str], freeze: Collection[str]) -> See
     axes = {}
     for axis, joint in joints.items():
         bodies = [
-            b.seen_from(robot.pose(name)) for name in carried[axis] for b in robot.links[name].bodies
+            b.seen_from(robot.pose(name))
+            for name in carried[axis]
+            for b in robot.links[name].bodies
         ]
         whole = lumped(bodies)
         com = frame.T @ (whole.com - origin[axis]) if whole.mass else np.zeros(3)
@@ -116,7 +118,7 @@ def _refuse_others(
     """Refuse joints that move before the last axis or behind the first, unless they are frozen."""
     links = [link for own in carried.values() for link in own]
     chain = [robot.joints[link] for link in links]
-    chain += robot.above(tuple(joints.values())[0].parent)
+    chain += robot.above(next(iter(joints.values())).parent)
     for joint in chain:
         if joint.moves and joint not in joints.values() and joint.name not in freeze:
             how = "turns" if joint.kind == TURNS else f"is {joint.kind}"
@@ -132,8 +134,9 @@ def _frame(
     """Axes of the platform at zero angles in the base, signs of the joints, what was bent."""
     directions = {a: robot.pose(j.child).rotation @ j.axis for a, j in joints.items()}
     g = float(np.linalg.norm(robot.gravity))
-    up = -robot.gravity / g if g else directions.get("pan", np.array([0.0, 0.0, 1.0]))
-    signs, notes = dict.fromkeys(joints, 1.0), []
+    up: FloatArray = -robot.gravity / g if g else directions.get("pan", np.eye(3)[2])
+    signs: dict[str, float] = dict.fromkeys(joints, 1.0)
+    notes: list[str] = []
     if "pan" not in directions:
         y = directions["tilt"]
         z = up - _across(y, up, joints["tilt"], "the vertical", notes) * y
@@ -158,16 +161,15 @@ def _frame(
     return np.column_stack([np.cross(y, z), y, z]), signs, notes
 
 
-def _across(
-    axis: FloatArray, other: FloatArray, joint: Joint, of: str, notes: list[str]
-) -> float:
+def _across(axis: FloatArray, other: FloatArray, joint: Joint, of: str, notes: list[str]) -> float:
     """The part of one unit vector along another, next to nothing where they are square."""
     along = float(axis @ other)
     off = abs(math.asin(max(-1.0, min(1.0, along))))
     if off > OFF_SQUARE:
+        found = _degrees(math.pi / 2 - off)
         raise joint.element.refused(
-            f"the axis of tilt joint {shown(joint.name)} and {of} make {_degrees(math.pi / 2 - off)}"
-            f"; a platform has 90 deg, to {_degrees(OFF_SQUARE)}: name another joint, or correct"
+            f"the axis of tilt joint {shown(joint.name)} and {of} make {found}; a platform"
+            f" has 90 deg, to {_degrees(OFF_SQUARE)}: name another joint, or correct"
             " the angles of the file."
         )
     if off > ROUNDING:

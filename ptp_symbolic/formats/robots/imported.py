@@ -28,6 +28,9 @@ from ptp_symbolic.platform.fields import shown
 LEAST_INERTIA = 1e-12  # kg m^2; the lower bound of a body's inertia in a platform
 LEVEL = 1e-9  # rad; a base that leans by less is level
 NO_PRODUCT = 1e-13  # of the largest inertia; what rounding leaves of a product that is zero
+STRIBECK_SPEED = 0.016  # rad/s; no influence where static friction is Coulomb friction
+STIFFNESS_OF_STOPS = 1e3  # N m/rad; the default of end_stop: the files do not say it
+DAMPING_OF_STOPS = 0.3  # s/rad; likewise
 READERS = {"robot": read_urdf, "mujoco": read_mjcf}
 
 
@@ -85,7 +88,9 @@ def read_robot(
         found = seen(robot, named, freeze)
     except InputError as wrong:
         message = str(wrong)
-        raise InputError(message if message.startswith(str(path)) else f"{path}: {message}") from wrong
+        raise InputError(
+            message if message.startswith(str(path)) else f"{path}: {message}"
+        ) from wrong
     return _Import(robot, found, path, name or "robot").platform()
 
 
@@ -126,7 +131,9 @@ class _Import:
             ) from wrong
         return ImportedPlatform(made, self.path, tuple(self.notes), tuple(self.lost))
 
-    def declare(self, effect: str, axis: str | None = None, **values: tuple[float, str]) -> None:
+    def declare(
+        self, effect: str, values: Mapping[str, tuple[float, str]], axis: str | None = None
+    ) -> None:
         """Declare an effect and its values, in SI units."""
         self.effects.append(EffectDeclaration(effect, axis, None))
         self.values |= {name: (float(value), unit) for name, (value, unit) in values.items()}
@@ -140,7 +147,9 @@ class _Import:
 
     def _orientation(self) -> None:
         x = self.found.frame[:, 0]
-        self.notes.append(f"At zero angles the boresight (x) is {_vector(x)} in the base of the file.")
+        self.notes.append(
+            f"At zero angles the boresight (x) is {_vector(x)} in the base of the file."
+        )
         self.notes += self.found.notes
 
     def _bodies(self) -> None:
@@ -170,14 +179,16 @@ class _Import:
         for axis, inertia in armature.items():
             if inertia:
                 into = "J_pan" if axis == "pan" else "J_y_tilt"
-                self.notes.append(f"{into} has the armature of the {axis} joint, {inertia:.9g} kg m^2.")
+                self.notes.append(
+                    f"{into} has the armature of the {axis} joint, {inertia:.9g} kg m^2."
+                )
         for name, value in inertias.items():
             if value < LEAST_INERTIA:
                 self.notes.append(f"{name} is {value:.3g} kg m^2 in the file, less than it may be.")
         kept = {n: (max(v, LEAST_INERTIA), "kg m^2") for n, v in inertias.items()}
-        self.declare("rigid_bodies", **kept)
+        self.declare("rigid_bodies", kept)
         if products:
-            self.declare("product_of_inertia", **{n: (v, "kg m^2") for n, v in products.items()})
+            self.declare("product_of_inertia", {n: (v, "kg m^2") for n, v in products.items()})
         if has_tilt:
             self._tilting_mass(has_pan)
         if has_pan and lean:
@@ -215,43 +226,43 @@ class _Import:
         across = "xyz" if has_pan else "xz"
         point = {f"c_{k}_payload": (body.com["xyz".index(k)], "m") for k in across}
         about_itself = {f"J_{k}_payload": (0.0, "kg m^2") for k in ("xyz" if has_pan else "y")}
-        self.declare("payload", m_payload=(body.mass, "kg"), **about_itself, **point)
+        self.declare("payload", {"m_payload": (body.mass, "kg"), **about_itself, **point})
         self.notes.append(
             "m_payload, c_*_payload: the mass of all that tilts, at its centre of mass; J_*_tilt:"
             " its inertia about it."
         )
         if has_pan and self.found.ahead:
-            self.declare("axis_offset", a_tilt=(self.found.ahead, "m"), m_tilt=(0.0, "kg"))
+            offset = {"a_tilt": (self.found.ahead, "m"), "m_tilt": (0.0, "kg")}
+            self.declare("axis_offset", offset)
 
     def _leaning(self, lean: float, azimuth: float) -> None:
         body = self.found.axes["pan"].body
         if body.mass:
             com = {f"c_{k}_pan": (body.com[i], "m") for i, k in enumerate("xy")}
-            self.declare("pan_com_offset", m_pan_body=(body.mass, "kg"), **com)
-        self.declare("base_tilt", beta_base=(lean, "rad"), alpha_base=(azimuth, "rad"))
+            self.declare("pan_com_offset", {"m_pan_body": (body.mass, "kg"), **com})
+        self.declare("base_tilt", {"beta_base": (lean, "rad"), "alpha_base": (azimuth, "rad")})
 
     def _joint(self, axis: str, own: Carried) -> None:
         """Friction, spring and stops of a joint."""
         joint, sign = own.joint, own.sign
         if joint.damping:
-            self.declare("viscous_friction", axis, **{f"b_{axis}": (joint.damping, "N m s/rad")})
+            self.declare("viscous_friction", {f"b_{axis}": (joint.damping, "N m s/rad")}, axis)
         if joint.friction:
-            coulomb = (joint.friction, "N m")
-            self.declare(
-                "csvs_friction",
-                axis,
-                **{f"F_c_{axis}": coulomb, f"F_s_{axis}": coulomb},
-                **{f"v_s_{axis}": (0.016, "rad/s"), f"F_v_{axis}": (0.0, "N m s/rad")},
-            )
+            coulomb = {
+                f"F_c_{axis}": (joint.friction, "N m"),
+                f"F_s_{axis}": (joint.friction, "N m"),
+                f"v_s_{axis}": (STRIBECK_SPEED, "rad/s"),
+                f"F_v_{axis}": (0.0, "N m s/rad"),
+            }
+            self.declare("csvs_friction", coulomb, axis)
             self.notes.append(f"v_s_{axis} has no influence: static friction is Coulomb friction.")
         if joint.stiffness:
-            self.declare(
-                "cable_spring",
-                axis,
-                **{f"k1_cable_{axis}": (joint.stiffness, "N m/rad")},
-                **{f"k3_cable_{axis}": (0.0, "N m/rad^3")},
-                **{f"theta0_cable_{axis}": (sign * joint.rest, "rad")},
-            )
+            spring = {
+                f"k1_cable_{axis}": (joint.stiffness, "N m/rad"),
+                f"k3_cable_{axis}": (0.0, "N m/rad^3"),
+                f"theta0_cable_{axis}": (sign * joint.rest, "rad"),
+            }
+            self.declare("cable_spring", spring, axis)
         if joint.limits is not None:
             self._stops(axis, sign, *joint.limits)
         self.lost += [f"{shown(joint.name)}: {line}" for line in joint.lost]
@@ -261,22 +272,25 @@ class _Import:
             self.lost.append(f"limits of the {axis} joint, {low:g} to {high:g} rad: no way between")
             return
         low, high = sorted((sign * low, sign * high))
-        self.declare(
-            "end_stop",
-            axis,
-            **{f"theta_stop_upper_{axis}": (high, "rad")},
-            **{f"theta_stop_lower_{axis}": (low, "rad")},
-            **{f"k_stop_{axis}": (1e3, "N m/rad"), f"c_stop_{axis}": (0.3, "s/rad")},
-        )
+        stops = {
+            f"theta_stop_upper_{axis}": (high, "rad"),
+            f"theta_stop_lower_{axis}": (low, "rad"),
+            f"k_stop_{axis}": (STIFFNESS_OF_STOPS, "N m/rad"),
+            f"c_stop_{axis}": (DAMPING_OF_STOPS, "s/rad"),
+        }
+        self.declare("end_stop", stops, axis)
         self.notes.append(
-            f"k_stop_{axis} and c_stop_{axis} are not in the file: how hard the stops are is a guess."
+            f"k_stop_{axis} and c_stop_{axis} are not in the file: how hard the stops are is a"
+            " guess."
         )
 
     def _signals(self) -> Iterator[SignalDeclaration]:
         for axis in self.axes:
             turned = -1.0 if self.found.axes[axis].sign < 0.0 else None
             for name, unit, role in (("tau", "N m", "input"), ("theta", "rad", "output")):
-                yield SignalDeclaration(f"{name}_{axis}", f"{name}_{axis}", unit, role, scale=turned)
+                yield SignalDeclaration(
+                    f"{name}_{axis}", f"{name}_{axis}", unit, role, scale=turned
+                )
 
 
 def _lean(gravity: FloatArray) -> tuple[float, float]:
@@ -287,7 +301,7 @@ def _lean(gravity: FloatArray) -> tuple[float, float]:
     return lean, math.atan2(gravity[1], gravity[0])
 
 
-def _products(tensor: FloatArray) -> Mapping[str, float]:
+def _products(tensor: FloatArray) -> dict[str, float]:
     """Products of inertia, none where rounding alone is left of them."""
     found = {"xy": tensor[0, 1], "xz": tensor[0, 2], "yz": tensor[1, 2]}
     if max(map(abs, found.values())) <= NO_PRODUCT * float(np.abs(tensor).max()):

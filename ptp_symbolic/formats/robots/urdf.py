@@ -106,13 +106,13 @@ def _joint(element: Element, links: dict[str, Link]) -> Joint:
     kind = element.required("type")
     if kind not in KINDS:
         raise element.refused(f"type {shown(kind)} is not one of {', '.join(KINDS)}.")
-    ends = []
+    ends: dict[str, str] = {}
     for end in ("parent", "child"):
         named = element.first(end)
         link = named.required("link") if named is not None else ""
         if link not in links:
             raise element.refused(f"its {end} {shown(link)} is no link of the file; name one.")
-        ends.append(link)
+        ends[end] = link
     turns = kind in ("revolute", "continuous")
     axis, dynamics = element.first("axis"), element.first("dynamics")
     along = np.array([1.0, 0.0, 0.0])
@@ -122,14 +122,18 @@ def _joint(element: Element, links: dict[str, Link]) -> Joint:
     return Joint(
         element.required("name"),
         TURNS if turns else kind,
-        *ends,
+        ends["parent"],
+        ends["child"],
         _pose(element),
         element,
         along,
         damping=dynamics.positive("damping", 0.0) if dynamics is not None else 0.0,
         friction=dynamics.positive("friction", 0.0) if dynamics is not None else 0.0,
         limits=limits,
-        lost=(*lost, *(f"<{e.tag}>: all of it" for e in element.children if e.tag in LOST_OF_JOINTS)),
+        lost=(
+            *lost,
+            *(f"<{e.tag}>: all of it" for e in element.children if e.tag in LOST_OF_JOINTS),
+        ),
     )
 
 

@@ -31,7 +31,8 @@ JOINT_PARTS = {
     "cable_spring": "the cubic part",
 }
 STANDARD_GRAVITY = 9.81  # m/s^2; where no equation has gravity in it
-STAND_IN = 1e-12  # kg; of a body without a mass: simulators refuse zero, and more would have effect
+STAND_IN = 1.0  # kg; mass of a body whose mass is not declared, on the axes, where it has no effect
+LEAST_MASS = 1e-12  # kg; of such a body off the pan axis: simulators refuse zero
 
 
 @dataclass(frozen=True)
@@ -107,7 +108,8 @@ class Machine:
         own = [self._inertial(b, axis) for b in self.rigid.bodies if b.frame == axis]
         heavy = [b for b in own if b.mass]
         if not heavy:
-            return [replace(b, mass=STAND_IN) for b in own]
+            mass = LEAST_MASS if self.rigid.offsets.get(axis) else STAND_IN
+            return [replace(b, mass=mass) for b in own]
         first, *others = heavy
         tensor = np.sum([b.inertia for b in own if not b.mass or b is first], axis=0)
         return [replace(first, inertia=tuple(map(tuple, tensor.tolist()))), *others]
