@@ -1,22 +1,18 @@
 """Python literals of an emitted module, formatted as the project formats its own code."""
 
-import json
 import textwrap
 from collections.abc import Iterable
+
+from ptp_symbolic.symbolic.targets.target import literal
 
 TEXT_WIDTH = 80
 WIDTH = 100
 
 
-def repr_text(value: str) -> str:
-    """Return `value` as a double-quoted literal, whatever it holds: titles come from files."""
-    return json.dumps(value, ensure_ascii=False)
-
-
 def long_text(value: str) -> str:
     """A literal over as many lines as it needs."""
     lines = textwrap.wrap(value, TEXT_WIDTH, drop_whitespace=False) or [""]
-    return "\n        ".join(repr_text(line) for line in lines)
+    return "\n        ".join(literal(line) for line in lines)
 
 
 def named_tuple_text(name: str, items: Iterable[str]) -> str:
