@@ -228,9 +228,9 @@ class _Tree:
         return float(low), float(high)
 
     def bodies(self, body: Element, inherited: str) -> tuple[Inertial, ...]:
-        """What of a body has a mass: its `<inertial>`, or its geoms."""
+        """What of a body has a mass: its `<inertial>`, or its geoms, which "true" prefers."""
         geoms, element = self.compiler.geoms, body.first("inertial")
-        if element is not None and geoms != "true":
+        if element is not None and (geoms != "true" or not body.all("geom")):
             return (self.inertial(element),)
         if geoms == "false":
             return ()
