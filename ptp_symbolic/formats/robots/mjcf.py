@@ -228,18 +228,17 @@ class _Tree:
         return float(low), float(high)
 
     def bodies(self, body: Element, inherited: str) -> tuple[Inertial, ...]:
-        """What of a body has a mass: its `<inertial>`, or its geoms, which "true" prefers."""
-        geoms, element = self.compiler.geoms, body.first("inertial")
-        if element is not None and (geoms != "true" or not body.all("geom")):
-            return (self.inertial(element),)
-        if geoms == "false":
-            return ()
+        """What of a body has a mass: its `<inertial>`, or its geoms that have one."""
+        way, element = self.compiler.geoms, body.first("inertial")
+        explicit = () if element is None else (self.inertial(element),)
+        if way == "false" or (way == "auto" and explicit):
+            return explicit
         found = []
         for geom in body.all("geom"):
             own = self.compiler.with_defaults(geom, inherited)
             inertial, pose = geom_inertial(own, self.pose(own), COMPILED)
             found.append(inertial.seen_from(pose))
-        return tuple(found)
+        return tuple(found) if any(each.mass for each in found) else explicit
 
     def inertial(self, element: Element) -> Inertial:
         """An explicit `<inertial>`."""
