@@ -48,7 +48,6 @@ def new(
     """
     from ptp_symbolic.atomic_files import check_writable, write_files_atomically
     from ptp_symbolic.errors import InputError
-    from ptp_symbolic.formats.robots.imported import read_robot
     from ptp_symbolic.formats.starting_file import SCHEMA_NAME, starting_text
     from ptp_symbolic.platform import fields
 
@@ -70,15 +69,26 @@ def new(
         text = starting_text(name, machine, drive)
         done = f"fill in every nan, then run: ptp-symbolic check --platform {file} LOG..."
     else:
-        given = click.get_current_context().get_parameter_source
-        if click.core.ParameterSource.COMMANDLINE in (given("machine"), given("drive")):
-            raise InputError("--machine and --drive: a robot has its own axes; leave them out.")
-        imported = read_robot(robot, pan, tilt, freeze, name)
-        text, done = imported.text, f"try ptp-symbolic simulate --platform {file} --out run"
-        for line in (*imported.notes, *(f"not in the file: {lost}" for lost in imported.lost)):
-            click.echo(line)
+        text = _text_of_robot(robot, pan, tilt, freeze, name)
+        done = f"try ptp-symbolic simulate --platform {file} --out run"
     write_files_atomically(file.parent, {SCHEMA_NAME: schema, file.name: text})
     click.echo(f"{file}: {done}")
+
+
+def _text_of_robot(
+    robot: Path, pan: str | None, tilt: str | None, freeze: tuple[str, ...], name: str
+) -> str:
+    """The text of a robot's platform; what was read and what is lost is printed."""
+    from ptp_symbolic.errors import InputError
+    from ptp_symbolic.formats.robots.imported import read_robot
+
+    given = click.get_current_context().get_parameter_source
+    if click.core.ParameterSource.COMMANDLINE in (given("machine"), given("drive")):
+        raise InputError("--machine and --drive: a robot has its own axes; leave them out.")
+    imported = read_robot(robot, pan, tilt, freeze, name)
+    for line in (*imported.notes, *(f"not in the file: {lost}" for lost in imported.lost)):
+        click.echo(line)
+    return imported.text
 
 
 @click.command()

@@ -77,9 +77,8 @@ class Drawn:
 {self.inertial()}{self.geom()}{self.fixed()}</body></body></body></worldbody></mujoco>"""
 
 
-@pytest.mark.parametrize(
-    "seed", [1, *(pytest.param(s, marks=pytest.mark.long) for s in range(2, 11))]
-)
+@pytest.mark.long
+@pytest.mark.parametrize("seed", range(1, 11))
 def test_random_models_accelerate_as_in_mujoco(seed: int, tmp_path: Path) -> None:
     mujoco = pytest.importorskip("mujoco")
     text = Drawn(seed).model()

@@ -3,21 +3,17 @@
 import re
 from dataclasses import replace
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 import ptp_symbolic as ptp
-from ptp_symbolic.models.emission import module_of, possible_equations
+from ptp_symbolic.models.emission import possible_equations
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, read_platform
 from ptp_symbolic.symbolic.program.program import program
 from ptp_symbolic.symbolic.targets.multibody import Mjcf, Urdf
-from tests.effects.plain_python import module_as_python
 from tests.robots.texts import HEAD, TURRET, UPSIDE_DOWN
-
-FloatArray = NDArray[np.float64]
+from tests.targets.accelerations import Accelerations
 
 
 def written(folder: Path, text: str) -> Path:
@@ -25,19 +21,6 @@ def written(folder: Path, text: str) -> Path:
     file = folder / ("robot.urdf" if "<robot" in text else "model.xml")
     file.write_text(text, encoding="utf-8")
     return file
-
-
-class Accelerations:
-    """Of the emitted module of a platform without modes, as plain Python."""
-
-    def __init__(self, platform: Platform) -> None:
-        self.module: ModuleType = module_as_python(module_of(platform))
-        self.p = np.array([default for _, _, default, *_ in self.module.PARAMETERS])
-
-    def __call__(self, x: FloatArray, u: FloatArray) -> FloatArray:
-        dx = np.zeros(len(x))
-        self.module.state_derivative(0.0, x, u, self.p, dx)
-        return dx[len(x) // 2 :]
 
 
 def off_mujoco(

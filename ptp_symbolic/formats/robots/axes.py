@@ -58,12 +58,7 @@ def seen(robot: Robot, named: Mapping[str, str], freeze: Collection[str]) -> See
             f" {shown(joints['pan'].name)} (line {joints['pan'].element.line}); swap the two, or"
             " name joints of one chain."
         )
-    carried: dict[str, list[str]] = {axis: [] for axis in joints}
-    for link in robot.links:
-        above = robot.above(link)
-        axis = next((a for a in reversed(joints) if joints[a] in above), None)
-        if axis is not None:
-            carried[axis].append(link)
+    carried = _carried(robot, joints)
     _refuse_others(robot, joints, carried, freeze)
     frame, signs, notes = _frame(robot, joints)
     points = {a: robot.pose(j.child).point(j.point) for a, j in joints.items()}
@@ -84,6 +79,17 @@ def seen(robot: Robot, named: Mapping[str, str], freeze: Collection[str]) -> See
         body = Inertial(whole.mass, com, frame.T @ whole.inertia @ frame)
         axes[axis] = Carried(joint, tuple(carried[axis]), body, signs[axis])
     return Seen(axes, frame, ahead, frame.T @ robot.gravity, tuple(notes))
+
+
+def _carried(robot: Robot, joints: Mapping[str, Joint]) -> dict[str, list[str]]:
+    """Names of the links that each axis carries, up to the next."""
+    carried: dict[str, list[str]] = {axis: [] for axis in joints}
+    for link in robot.links:
+        above = robot.above(link)
+        axis = next((a for a in reversed(tuple(joints)) if joints[a] in above), None)
+        if axis is not None:
+            carried[axis].append(link)
+    return carried
 
 
 def _turning(robot: Robot, axis: str, name: str) -> Joint:

@@ -176,6 +176,17 @@ class _Import:
                 products = _products(tensor)
             else:
                 inertias["J_y_tilt"] = float(tensor[1, 1])
+        self._note_inertias(armature, inertias)
+        kept = {n: (max(v, LEAST_INERTIA), "kg m^2") for n, v in inertias.items()}
+        self.declare("rigid_bodies", kept)
+        if products:
+            self.declare("product_of_inertia", {n: (v, "kg m^2") for n, v in products.items()})
+        if has_tilt:
+            self._tilting_mass(has_pan)
+        if has_pan and lean:
+            self._leaning(lean, azimuth)
+
+    def _note_inertias(self, armature: Mapping[str, float], inertias: Mapping[str, float]) -> None:
         for axis, inertia in armature.items():
             if inertia:
                 into = "J_pan" if axis == "pan" else "J_y_tilt"
@@ -185,14 +196,6 @@ class _Import:
         for name, value in inertias.items():
             if value < LEAST_INERTIA:
                 self.notes.append(f"{name} is {value:.3g} kg m^2 in the file, less than it may be.")
-        kept = {n: (max(v, LEAST_INERTIA), "kg m^2") for n, v in inertias.items()}
-        self.declare("rigid_bodies", kept)
-        if products:
-            self.declare("product_of_inertia", {n: (v, "kg m^2") for n, v in products.items()})
-        if has_tilt:
-            self._tilting_mass(has_pan)
-        if has_pan and lean:
-            self._leaning(lean, azimuth)
 
     def _make_room(self, tensor: FloatArray, inertias: dict[str, float]) -> None:
         """Move inertia from the pan body to the tilt body, about x and z alike, as far as a rotor
