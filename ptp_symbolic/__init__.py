@@ -29,6 +29,8 @@ _HOMES = {
     "Sensitivities": "ptp_symbolic.numeric.sensitivities",
     "inverse_dynamics": "ptp_symbolic.models.inverse_dynamics",
     "export": "ptp_symbolic.api.export",
+    "read_robot": "ptp_symbolic.formats.robots.imported",
+    "ImportedPlatform": "ptp_symbolic.formats.robots.imported",
     "Log": "ptp_symbolic.api.logs",
     "read_log": "ptp_symbolic.api.logs",
     "sample": "ptp_symbolic.api.logs",

@@ -25,6 +25,8 @@ from ptp_symbolic.api.run import Run as Run
 from ptp_symbolic.api.simulation import sensitivity as sensitivity
 from ptp_symbolic.api.simulation import simulate as simulate
 from ptp_symbolic.errors import InputError as InputError
+from ptp_symbolic.formats.robots.imported import ImportedPlatform as ImportedPlatform
+from ptp_symbolic.formats.robots.imported import read_robot as read_robot
 from ptp_symbolic.models.inverse_dynamics import inverse_dynamics as inverse_dynamics
 from ptp_symbolic.numeric.runtime.model import Model as Model
 from ptp_symbolic.numeric.sensitivities import Sensitivities as Sensitivities

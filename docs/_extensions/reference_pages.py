@@ -22,7 +22,7 @@ GROUPS = {
     "Fit and diagnosis": ("fit", "FitResult", "Estimate", "diagnose", "Diagnosis"),
     "Experiments": ("experiment", "Experiment", "friction_map", "FrictionMap"),
     "Platforms and effects": ("read_platform", "Platform", "Effect", "check_effect"),
-    "Export": ("export",),
+    "Other tools": ("export", "read_robot", "ImportedPlatform"),
     "Errors": ("InputError", "SimulationError"),
 }
 

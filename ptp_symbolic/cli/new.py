@@ -25,7 +25,24 @@ FILES = ("platform", "diagnosis")
     show_default=True,
     help="What drives it: the voltage of a DC motor, or a torque (force).",
 )
-def new(file: Path, machine: str, drive: str) -> None:
+@click.option(
+    "--from",
+    "robot",
+    type=Path,
+    help="Robot in URDF or MJCF to lump into a platform, in place of --machine and --drive.",
+)
+@click.option("--pan", help="Joint of the robot that is the pan axis.")
+@click.option("--tilt", help="Joint of the robot that is the tilt axis.")
+@click.option("--freeze", multiple=True, help="Joint of the robot to hold as drawn; repeatable.")
+def new(
+    file: Path,
+    machine: str,
+    drive: str,
+    robot: Path | None,
+    pan: str | None,
+    tilt: str | None,
+    freeze: tuple[str, ...],
+) -> None:
     """Write a commented platform FILE (.toml) to start from, and beside it the schema by which
     editors complete and check it.
     """
@@ -46,9 +63,32 @@ def new(file: Path, machine: str, drive: str) -> None:
             " another folder."
         )
     check_writable(file.parent)
-    text = starting_text(name, machine, drive)
+    if robot is None:
+        if pan is not None or tilt is not None or freeze:
+            raise InputError("--pan, --tilt and --freeze name joints of a robot; add --from FILE.")
+        text = starting_text(name, machine, drive)
+        done = f"fill in every nan, then run: ptp-symbolic check --platform {file} LOG..."
+    else:
+        text = _text_of_robot(robot, pan, tilt, freeze, name)
+        done = f"try ptp-symbolic simulate --platform {file} --out run"
     write_files_atomically(file.parent, {SCHEMA_NAME: schema, file.name: text})
-    click.echo(f"{file}: fill in every nan, then run: ptp-symbolic check --platform {file} LOG...")
+    click.echo(f"{file}: {done}")
+
+
+def _text_of_robot(
+    robot: Path, pan: str | None, tilt: str | None, freeze: tuple[str, ...], name: str
+) -> str:
+    """The text of a robot's platform; what was read and what is lost is printed."""
+    from ptp_symbolic.errors import InputError
+    from ptp_symbolic.formats.robots.imported import read_robot
+
+    given = click.get_current_context().get_parameter_source
+    if click.core.ParameterSource.COMMANDLINE in (given("machine"), given("drive")):
+        raise InputError("--machine and --drive: a robot has its own axes; leave them out.")
+    imported = read_robot(robot, pan, tilt, freeze, name)
+    for line in (*imported.notes, *(f"not in the file: {lost}" for lost in imported.lost)):
+        click.echo(line)
+    return imported.text
 
 
 @click.command()

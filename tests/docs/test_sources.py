@@ -19,7 +19,7 @@ def test_kept_outputs_belong_to_the_tutorials_as_they_are(
     docs: Path, kept_outputs: ModuleType
 ) -> None:
     sources = kept_outputs.tutorials(docs)
-    assert len(sources) == 7
+    assert len(sources) == 9
     assert [path.name for path in sources if kept_outputs.is_stale(path)] == []
     kept = {path.stem for path in (docs / "tutorials" / "outputs").glob("*.ipynb")}
     assert kept == {path.stem for path in sources}
@@ -66,6 +66,34 @@ def test_the_tutorials_found_the_truth(docs: Path, kept_outputs: ModuleType) -> 
     assert static == pytest.approx(0.40, abs=0.01)
     first = float(re.search(r"time=([0-9.]+)", printed("stick_slip_and_backlash"))[1])
     assert first == pytest.approx(0.5 / (2.0 * 0.1), abs=1e-6)
+    plan = printed("predictive_control")
+    assert float(re.search(r"pan ([0-9.-]+) deg", plan)[1]) == pytest.approx(90.0, abs=0.01)
+    for largest, limit in re.findall(r"largest tau_\w+: ([0-9.]+) of ([0-9.]+) N m", plan):
+        assert float(largest) <= float(limit) + 1e-3
+    pairs = re.findall(r": ([0-9.-]+) by JAX, ([0-9.-]+) by", printed("batches_and_gradients"))
+    assert len(pairs) == 3
+    for by_jax, by_sensitivity in pairs:
+        assert float(by_jax) == pytest.approx(float(by_sensitivity), rel=1e-5)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("name", "library"), [("predictive_control", "casadi"), ("batches_and_gradients", "diffrax")]
+)
+def test_tutorials_of_other_libraries_run(
+    name: str, library: str, docs: Path, kept_outputs: ModuleType, tmp_path: Path
+) -> None:
+    """Their outputs are kept: here they run with the versions that are installed."""
+    pytest.importorskip(library)
+    cells = kept_outputs.code(kept_outputs.source(docs / "tutorials" / f"{name}.md"))
+    program = "\n".join(cell for cell in cells if not cell.startswith("%"))
+    ran = subprocess.run(
+        [sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert ran.returncode == 0, ran.stderr
+    (line,) = [line for line in ran.stdout.splitlines() if line.startswith(("after", "c_x"))]
+    kept = kept_outputs.kept(docs / "tutorials" / f"{name}.md").cells
+    assert any(line in o.text for c in kept for o in c.outputs if o.output_type == "stream")
 
 
 def test_every_effect_is_described_as_a_log_shows_it(docs: Path) -> None:

@@ -85,7 +85,7 @@ class Reader:
         """What a C program prints that includes the exported source; nothing without a compiler."""
         compiler = shutil.which("cc")
         (header,) = re.findall(r'#include "(\w+)\.h"', text)
-        (source,) = self.folder.rglob(f"{header}.c")
+        source = min(self.folder.rglob(f"{header}.c"))
         (source.parent / "main.c").write_text(text, encoding="utf-8")
         if compiler is None:
             return ""

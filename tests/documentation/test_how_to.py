@@ -2,6 +2,7 @@
 
 import math
 import re
+import shutil
 import sys
 import tomllib
 from collections.abc import Callable
@@ -16,16 +17,19 @@ from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.placement import undeclared_parameters
 from ptp_symbolic.symbolic.effects import EFFECTS, GROUP
-from tests.documentation.pages import Reader, blocks
+from tests.documentation.pages import Reader, blocks, in_a_shell
 
 FOLDER = Path(__file__).parents[2] / "docs" / "how-to"
 PAGES = sorted(page for page in FOLDER.glob("*.md") if page.name != "index.md")
+COMPILERS = ("arm-none-eabi-gcc",)  # run where they are installed
 LONG = ("diagnose", "fit")  # minutes: their arguments are read, and the files they name
 
 
 @pytest.fixture
 def command(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Callable:
     def run(words: list[str]) -> str:
+        if words[0] in COMPILERS:
+            return in_a_shell(words) if shutil.which(words[0]) else ""
         assert words[0] == "ptp-symbolic", words
         if words[1] in LONG:
             long = commands.commands[words[1]]

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import ptp_symbolic as ptp
 from ptp_symbolic.models.emission import possible_equations
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, read_platform
 from ptp_symbolic.symbolic.program.program import program
 from ptp_symbolic.symbolic.targets.multibody import Mjcf, Urdf
+from tests.targets.accelerations import Accelerations
 
 mujoco = pytest.importorskip("mujoco")
 
@@ -32,10 +32,10 @@ RIGID = {
     "k1_cable_pan": ("N m/rad", 0.8),
     "theta0_cable_pan": ("rad", 0.2),
     "beta_base": ("rad", 0.07),
-    "phi_base": ("rad", 0.9),
-    "J_xy_payload": ("kg m^2", 0.001),
-    "J_xz_payload": ("kg m^2", -0.0007),
-    "J_yz_payload": ("kg m^2", 0.0004),
+    "alpha_base": ("rad", 0.9),
+    "J_xy_tilt": ("kg m^2", 0.001),
+    "J_xz_tilt": ("kg m^2", -0.0007),
+    "J_yz_tilt": ("kg m^2", 0.0004),
 }
 
 
@@ -65,14 +65,14 @@ def exported(target: Mjcf | Urdf, platform: Platform) -> str:
 )
 def test_mujoco_accelerates_as_the_equations_do(more: tuple[str, ...]) -> None:
     platform = camera(*more)
-    machine = ptp.load(platform)
+    machine = Accelerations(platform)
     model = mujoco.MjModel.from_xml_string(exported(Mjcf(), platform))
     data, rng, worst = mujoco.MjData(model), np.random.default_rng(3), 0.0
     for _ in range(50):
         x, u = rng.normal(0.0, 0.8, 4), rng.normal(0.0, 2.0, 2)
         data.qpos[:], data.qvel[:], data.ctrl[:] = x[:2], x[2:], u
         mujoco.mj_forward(model, data)
-        ours = machine.rhs(x, u=u)[2:]
+        ours = machine(x, u)
         worst = max(worst, float(np.max(np.abs(data.qacc - ours) / (1.0 + np.abs(ours)))))
     assert worst < 1e-12
 
@@ -85,12 +85,12 @@ def test_mujoco_reads_the_urdf_and_accelerates_alike() -> None:
     assert Urdf().remarks(program(possible_equations(platform))) == []
     text = exported(Urdf(), platform)
     model = mujoco.MjModel.from_xml_string(re.sub(r"<!--.*?-->", "", text, flags=re.S))
-    data, rng, machine = mujoco.MjData(model), np.random.default_rng(4), ptp.load(platform)
+    data, rng, machine = mujoco.MjData(model), np.random.default_rng(4), Accelerations(platform)
     for _ in range(20):
         x, u = rng.normal(0.0, 0.8, 4), rng.normal(0.0, 2.0, 2)
         data.qpos[:], data.qvel[:], data.qfrc_applied[:] = x[:2], x[2:], u
         mujoco.mj_forward(model, data)
-        assert np.allclose(data.qacc, machine.rhs(x, u=u)[2:], rtol=1e-9, atol=1e-9)
+        assert np.allclose(data.qacc, machine(x, u), rtol=1e-9, atol=1e-9)
 
 
 def test_a_motor_is_the_armature_of_its_joint_and_what_is_lost_is_said() -> None:

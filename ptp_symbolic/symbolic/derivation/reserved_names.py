@@ -22,7 +22,7 @@ def refuse_reserved_names(equations: Equations) -> None:
     named += [("Input", given.name) for given in equations.inputs]
     named += [("Named function", str(symbol)) for symbol, _ in equations.terms]
     for what, name in named:
-        if not name.isidentifier() or keyword.iskeyword(name):
+        if not (name.isidentifier() and name.isascii()) or keyword.iskeyword(name):
             raise ValueError(f"{what} '{name}' has no valid name: use letters, digits and _.")
         if name in VARIABLES or name.startswith(PREFIXES):
             raise ValueError(

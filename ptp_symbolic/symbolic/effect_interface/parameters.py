@@ -63,9 +63,8 @@ class Parameter:
 
     def at_axis(self, axis: str | None) -> "Parameter":
         """Return the parameter with its name and meaning filled in for `axis`."""
-        return replace(
-            self, name=self.name.format(axis=axis), meaning=self.meaning.format(axis=axis)
-        )
+        name, meaning = (text.replace("{axis}", str(axis)) for text in (self.name, self.meaning))
+        return replace(self, name=name, meaning=meaning)
 
 
 def harmonics(sine: Parameter, cosine: Parameter) -> tuple[tuple[Parameter, Parameter], ...]:

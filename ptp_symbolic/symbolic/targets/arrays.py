@@ -1,6 +1,5 @@
 """Python modules of array libraries: CasADi and JAX."""
 
-import keyword
 import textwrap
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -8,9 +7,8 @@ from dataclasses import dataclass
 from ptp_symbolic.symbolic.program.program import Program
 from ptp_symbolic.symbolic.targets.functions import Function, functions, names_of
 from ptp_symbolic.symbolic.targets.printing import Language
-from ptp_symbolic.symbolic.targets.target import effects_of, in_lines, late_inputs, literal
-
-WORDS = frozenset(keyword.kwlist) | {"ca", "jnp", "np"}
+from ptp_symbolic.symbolic.targets.target import effects_of, in_lines, literal, remarks_of_functions
+from ptp_symbolic.symbolic.targets.words import WORDS
 
 
 @dataclass(frozen=True)
@@ -31,8 +29,8 @@ class ArrayModule:
         return None
 
     def remarks(self, program: Program) -> list[str]:
-        """Nothing is lost; inputs that are late are delayed by the caller."""
-        return late_inputs(program)
+        """Nothing is lost; inputs that are late, and names that are others."""
+        return remarks_of_functions(program)
 
     def files(self, program: Program, name: str) -> Mapping[str, str]:
         """``name_casadi.py`` or ``name_jax.py``."""

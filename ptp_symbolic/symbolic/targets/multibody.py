@@ -2,8 +2,9 @@
 
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+import numpy as np
 import sympy as sp
 
 from ptp_symbolic.symbolic.mechanics.bodies import Body
@@ -31,6 +32,7 @@ JOINT_PARTS = {
 }
 STANDARD_GRAVITY = 9.81  # m/s^2; where no equation has gravity in it
 STAND_IN = 1.0  # kg; mass of a body whose mass is not declared, on the axes, where it has no effect
+LEAST_MASS = 1e-12  # kg; of such a body off the pan axis: simulators refuse zero
 
 
 @dataclass(frozen=True)
@@ -100,8 +102,17 @@ class Machine:
         )
 
     def bodies(self, axis: str) -> list[Inertial]:
-        """The bodies that the frame behind a joint carries."""
-        return [self._inertial(b, axis) for b in self.rigid.bodies if b.frame == axis]
+        """The bodies that the frame behind a joint carries. The inertia of one without a mass is
+        that of the others, wherever they are.
+        """
+        own = [self._inertial(b, axis) for b in self.rigid.bodies if b.frame == axis]
+        heavy = [b for b in own if b.mass]
+        if not heavy:
+            mass = LEAST_MASS if self.rigid.offsets.get(axis) else STAND_IN
+            return [replace(b, mass=mass) for b in own]
+        first, *others = heavy
+        tensor = np.sum([b.inertia for b in own if not b.mass or b is first], axis=0)
+        return [replace(first, inertia=tuple(map(tuple, tensor.tolist()))), *others]
 
     def _inertial(self, body: Body, axis: str) -> Inertial:
         mass = self.number(body.mass)
@@ -111,7 +122,7 @@ class Machine:
             inertia[0][0] = inertia[1][1] = inertia[2][2]  # a body that turns about z alone
         return Inertial(
             body.name,
-            mass or STAND_IN,
+            mass,
             tuple(self.number(c) for c in body.com),
             tuple(map(tuple, inertia)),
         )

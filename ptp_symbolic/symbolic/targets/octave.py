@@ -6,52 +6,9 @@ from collections.abc import Mapping
 from ptp_symbolic.symbolic.program.program import Program
 from ptp_symbolic.symbolic.targets.functions import Function, functions, names_of
 from ptp_symbolic.symbolic.targets.printing import Language
-from ptp_symbolic.symbolic.targets.target import late_inputs
+from ptp_symbolic.symbolic.targets.target import remarks_of_functions
+from ptp_symbolic.symbolic.targets.words import WORDS
 
-WORDS = frozenset(
-    [
-        "break",
-        "case",
-        "catch",
-        "continue",
-        "else",
-        "elseif",
-        "end",
-        "endfunction",
-        "for",
-        "function",
-        "global",
-        "if",
-        "otherwise",
-        "parfor",
-        "persistent",
-        "return",
-        "switch",
-        "try",
-        "while",
-        "until",
-        "do",
-        "unwind_protect",
-        "choice",
-        "pi",
-        "e",
-        "i",
-        "j",
-        "Inf",
-        "NaN",
-        "eps",
-        "exp",
-        "log",
-        "sin",
-        "cos",
-        "sign",
-        "sqrt",
-        "abs",
-        "min",
-        "max",
-        "floor",
-    ]
-)
 OCTAVE = Language(
     "octave",
     {head: f"{head}({{0}})" for head in ("sqrt", "exp", "log", "sin", "cos", "acos", "floor")}
@@ -93,8 +50,8 @@ class Octave:
         return None
 
     def remarks(self, program: Program) -> list[str]:
-        """Nothing is lost; inputs that are late are delayed by the caller."""
-        return late_inputs(program)
+        """Nothing is lost; inputs that are late, and names that are others."""
+        return remarks_of_functions(program)
 
     def files(self, program: Program, name: str) -> Mapping[str, str]:
         """One file per function, and one that returns names, units and values."""

@@ -53,8 +53,8 @@ class Language:
     words: frozenset[str] = frozenset()
 
     def identifier(self, name: str) -> str:
-        """`name`, with an underscore where it is a word of the language."""
-        return f"{name}_" if name in self.words else name
+        """`name`, with an underscore more where it is a word, or a word with underscores."""
+        return f"{name}_" if name.rstrip("_") in self.words else name
 
     def expression(self, expression: sp.Expr) -> str:
         """Source of an expression."""

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping
 from typing import Protocol, runtime_checkable
 
 from ptp_symbolic.symbolic.program.program import Program
+from ptp_symbolic.symbolic.targets.words import WORDS
 
 
 class Target(Protocol):
@@ -55,9 +56,26 @@ def late_inputs(program: Program) -> list[str]:
     return late
 
 
+def renamed(program: Program) -> list[str]:
+    """That a variable has another name than its parameter, state or input, where that is a word of
+    one of the languages.
+    """
+    equations = program.equations
+    names = [p.name for p in equations.parameters]
+    names += [*map(str, equations.state_symbols), *(i.name for i in equations.inputs)]
+    taken = [name for name in names if name.rstrip("_") in WORDS]
+    return [f"'{name}' is a word of a language: its variable is {name}_" for name in taken]
+
+
+def remarks_of_functions(program: Program) -> list[str]:
+    """What to know of functions that compute all of a program."""
+    return [*late_inputs(program), *renamed(program)]
+
+
 def literal(text: str) -> str:
-    """`text` as a double-quoted literal of Python or JavaScript, whatever it holds."""
-    return json.dumps(text)
+    """`text` as a double-quoted literal of Python, whatever it holds: titles come from files."""
+    quoted = json.dumps(text, ensure_ascii=False)
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in quoted)
 
 
 def in_lines(items: Iterable[str], width: int = 96) -> list[str]:

@@ -8,7 +8,7 @@ from ptp_symbolic.symbolic.program.kernel import Assignment, Entry, Kernel
 from ptp_symbolic.symbolic.program.program import Program
 from ptp_symbolic.symbolic.targets.c99.language import DOUBLE, FLOAT
 from ptp_symbolic.symbolic.targets.printing import Language
-from ptp_symbolic.symbolic.targets.target import effects_of, in_lines, late_inputs
+from ptp_symbolic.symbolic.targets.target import effects_of, in_lines, remarks_of_functions
 
 WIDTH = 96
 UNBROKEN = "\N{NO-BREAK SPACE}"  # in what must stay on one line
@@ -27,8 +27,8 @@ class C99:
         return None
 
     def remarks(self, program: Program) -> list[str]:
-        """Nothing is lost; inputs that are late are delayed by the caller."""
-        return late_inputs(program)
+        """Nothing is lost; inputs that are late, and names that are others."""
+        return remarks_of_functions(program)
 
     def files(self, program: Program, name: str) -> Mapping[str, str]:
         """``name.h`` and ``name.c``."""
@@ -137,14 +137,18 @@ def source(program: Program, name: str, language: Language, events: bool = False
         "",
         *_layout(program, events),
     ]
-    files = resources.files("ptp_symbolic.symbolic.targets.c99")
     if program.has_modes:
-        text.append((files / "modes.c").read_text())
+        text.append(_template("modes.c", name))
     for kernel in _kernels(program):
         text += [_function(kernel, name, language), ""]
-    text.append((files / "runtime.c").read_text())
-    own = "\n".join(_filled(text))
-    return own.replace("model_", f"{name}_").replace("MODEL_", f"{name.upper()}_")
+    text.append(_template("runtime.c", name))
+    return "\n".join(_filled(text))
+
+
+def _template(file: str, name: str) -> str:
+    """What all models have in common, for the one called `name`."""
+    text = (resources.files("ptp_symbolic.symbolic.targets.c99") / file).read_text()
+    return text.replace("model_", f"{name}_").replace("MODEL_", f"{name.upper()}_")
 
 
 def _kernels(program: Program) -> list[Kernel]:
@@ -365,6 +369,7 @@ def _escaped(text: str) -> str:
 def _comment(text: str) -> str:
     """A text inside a comment, whatever it holds: titles come from files."""
     plain = " ".join(text.replace("*/", "* /").replace("/*", "/ *").split())
+    plain = "".join(c if c.isprintable() else "?" for c in plain)
     return plain.replace("??", "? ?").rstrip("\\")
 
 

@@ -1,89 +1,7 @@
 """C99, in double and in single precision."""
 
 from ptp_symbolic.symbolic.targets.printing import Language
-
-KEYWORDS = frozenset(
-    [
-        "auto",
-        "break",
-        "case",
-        "char",
-        "const",
-        "continue",
-        "default",
-        "do",
-        "double",
-        "else",
-        "enum",
-        "extern",
-        "float",
-        "for",
-        "goto",
-        "if",
-        "inline",
-        "int",
-        "long",
-        "register",
-        "restrict",
-        "return",
-        "short",
-        "signed",
-        "sizeof",
-        "static",
-        "struct",
-        "switch",
-        "typedef",
-        "union",
-        "unsigned",
-        "void",
-        "volatile",
-        "while",
-        "real",
-        "asm",
-        "typeof",
-    ]
-)
-MATHS = frozenset(
-    [
-        "acos",
-        "asin",
-        "atan",
-        "atan2",
-        "ceil",
-        "copysign",
-        "cos",
-        "cosh",
-        "erf",
-        "exp",
-        "exp2",
-        "fabs",
-        "floor",
-        "fmax",
-        "fmin",
-        "fmod",
-        "gamma",
-        "hypot",
-        "j0",
-        "j1",
-        "jn",
-        "ldexp",
-        "lgamma",
-        "log",
-        "log10",
-        "log2",
-        "pow",
-        "round",
-        "sin",
-        "sinh",
-        "sqrt",
-        "tan",
-        "tanh",
-        "trunc",
-        "y0",
-        "y1",
-        "yn",
-    ]
-)
+from ptp_symbolic.symbolic.targets.words import WORDS
 
 
 def _c99(name: str, suffix: str) -> Language:
@@ -110,8 +28,7 @@ def _c99(name: str, suffix: str) -> Language:
         "Or": "(({0}) != 0 || ({1}) != 0)",
         "pi": f"3.141592653589793{s}",
     }
-    words = KEYWORDS | MATHS | frozenset(f"{word}f" for word in MATHS)
-    return Language(name, operations, suffix, words)
+    return Language(name, operations, suffix, WORDS)
 
 
 DOUBLE, FLOAT = _c99("c99", ""), _c99("c99-float", "f")

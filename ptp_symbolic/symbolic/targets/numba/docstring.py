@@ -9,14 +9,14 @@ from ptp_symbolic.symbolic.documents.latex import plain_text_of
 from ptp_symbolic.symbolic.program.program import Operations
 from ptp_symbolic.symbolic.simplify.readable import readable
 from ptp_symbolic.symbolic.symbols import real
-from ptp_symbolic.symbolic.targets.numba.literals import repr_text
+from ptp_symbolic.symbolic.targets.target import literal
 
 
 def docstring(equations: Equations, operations: Operations) -> str:
     """The docstring of the module that computes `equations`: these in the form in which it does,
     the `operations` of the state derivative (as derived, as written, at every call), its effects.
     """
-    title = repr_text(equations.title)[1:-1]
+    title = literal(equations.title)[1:-1]
     lines = [f'"""{title}: equations of motion, emitted; do not edit.', ""]
     lines.append("M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:")
     lines.append("")
@@ -56,7 +56,7 @@ def docstring(equations: Equations, operations: Operations) -> str:
     lines += ["", "Effects:"]
     for placed in equations.effects:
         where = f" ({placed.axis})" if placed.axis else ""
-        lines.append(f"- {placed.effect.id}{where}: {placed.effect.reference}")
+        lines.append(f"- {placed.effect.id}{where}: {literal(placed.effect.reference)[1:-1]}")
     lines.append('"""')
     return "\n".join(lines)
 

@@ -1,9 +1,10 @@
 """Python text of an emitted module, its lines filled."""
 
-import json
 import re
 import textwrap
 from collections.abc import Iterable
+
+from ptp_symbolic.symbolic.targets.target import literal
 
 TEXT_WIDTH = 80
 WIDTH = 100
@@ -13,15 +14,10 @@ TERMS = re.compile(r" (?![-+] |if |else )")  # the spaces that are not before su
 OPERANDS = re.compile(r" (?![-+*/] |if |else )")
 
 
-def repr_text(value: str) -> str:
-    """Return `value` as a double-quoted literal, whatever it holds: titles come from files."""
-    return json.dumps(value, ensure_ascii=False)
-
-
 def long_text(value: str) -> str:
     """A literal, or several beside each other that are one."""
     lines = textwrap.wrap(value, TEXT_WIDTH, drop_whitespace=False) or [""]
-    return " ".join(repr_text(line) for line in lines)
+    return " ".join(literal(line) for line in lines)
 
 
 def named_tuple_text(name: str, items: Iterable[str]) -> str:

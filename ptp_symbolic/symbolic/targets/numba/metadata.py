@@ -11,8 +11,8 @@ from ptp_symbolic.symbolic.targets.numba.literals import (
     named_tuple_text,
     number_text,
     numbers_text,
-    repr_text,
 )
+from ptp_symbolic.symbolic.targets.target import literal
 
 
 def metadata_text(equations: Equations, digest: str, opening: str, prepared: int) -> str:
@@ -21,8 +21,8 @@ def metadata_text(equations: Equations, digest: str, opening: str, prepared: int
     """
     constants = [
         f'MODEL_HASH = "{digest}"',
-        f"NAME = {repr_text(equations.name)}",
-        f"TITLE = {repr_text(equations.title)}",
+        f"NAME = {literal(equations.name)}",
+        f"TITLE = {literal(equations.title)}",
         "# How many numbers `prepare` writes.",
         f"PREPARED = {prepared}",
         *_signal_lines(equations),
@@ -54,9 +54,9 @@ def search_text(equations: Equations) -> str:
 def _signal_lines(equations: Equations) -> list[str]:
     """Names and units of what goes in, what moves and what comes out."""
     return [
-        named_tuple_text("AXES", map(repr_text, equations.axes)),
+        named_tuple_text("AXES", map(literal, equations.axes)),
         named_tuple_text("STATE_NAMES", (f'"{s}"' for s in equations.state_symbols)),
-        named_tuple_text("STATE_UNITS", map(repr_text, _state_units(equations))),
+        named_tuple_text("STATE_UNITS", map(literal, _state_units(equations))),
         named_tuple_text("STATE_INITIAL", map(repr, _state_initial(equations))),
         named_tuple_text("INPUT_NAMES", (f'"{i.name}"' for i in equations.inputs)),
         named_tuple_text("INPUT_UNITS", (f'"{i.unit}"' for i in equations.inputs)),
@@ -102,9 +102,9 @@ def _imports(equations: Equations) -> str:
 
 def _parameter(parameter: Parameter) -> str:
     p = parameter
-    fields = [repr_text(p.name), repr_text(p.unit)]
+    fields = [literal(p.name), literal(p.unit)]
     fields += [repr(float(value)) for value in (p.default, p.lower, p.upper)]
-    return f"({', '.join([*fields, repr_text(p.meaning)])})"
+    return f"({', '.join([*fields, literal(p.meaning)])})"
 
 
 def _is_searched(p: Parameter) -> bool:
@@ -112,9 +112,9 @@ def _is_searched(p: Parameter) -> bool:
 
 
 def _search(p: Parameter) -> str:
-    lock = "None" if p.locked_to is None else repr_text(p.locked_to)
+    lock = "None" if p.locked_to is None else literal(p.locked_to)
     fields = [
-        repr_text(p.name),
+        literal(p.name),
         number_text(p.vanishes),
         numbers_text(p.starts),
         number_text(p.period),
@@ -137,7 +137,7 @@ def _state_initial(equations: Equations) -> list[float]:
 
 def _idle_states(equations: Equations) -> list[str]:
     return [
-        f"({repr_text(name)}, ({listed(map(repr_text, off))}))"
+        f"({literal(name)}, ({listed(map(literal, off))}))"
         for name, off in equations.idle_states.items()
     ]
 
@@ -146,7 +146,7 @@ def _samplers(equations: Equations) -> list[str]:
     rows = []
     for sampler in equations.samplers:
         symbols = {str(symbol) for symbol in sampler.period.free_symbols}
-        names = [repr_text(p.name) for p in equations.parameters if p.name in symbols]
+        names = [literal(p.name) for p in equations.parameters if p.name in symbols]
         rows.append(f"({listed(names)})")
     return rows
 
@@ -157,17 +157,17 @@ def _sampled(equations: Equations) -> list[str]:
 
 
 def _domain(equations: Equations) -> list[str]:
-    return [f"({repr_text(str(own.state))}, {repr_text(own.meaning)})" for own in equations.limits]
+    return [f"({literal(str(own.state))}, {literal(own.meaning)})" for own in equations.limits]
 
 
 def _requirements(equations: Equations) -> list[str]:
     rows = []
     for own in equations.requirements:
         symbols = {str(symbol) for symbol in own.holds.free_symbols}
-        names = [repr_text(p.name) for p in equations.parameters if p.name in symbols]
+        names = [literal(p.name) for p in equations.parameters if p.name in symbols]
         inner = f"({listed(names)})"
         strict = isinstance(own.holds, sp.StrictGreaterThan | sp.StrictLessThan)
-        rows.append(f"({inner}, {repr_text(own.rule)}, {strict})")
+        rows.append(f"({inner}, {literal(own.rule)}, {strict})")
     return rows
 
 
@@ -190,7 +190,7 @@ def _effects(equations: Equations) -> list[str]:
         effect = placed.effect
         axis = "None" if placed.axis is None else f'"{placed.axis}"'
         texts = (effect.title, effect.reference, effect.separating_experiment)
-        members, acted_on = _members(placed, used), f"({listed(map(repr_text, placed.acts_on))})"
+        members, acted_on = _members(placed, used), f"({listed(map(literal, placed.acts_on))})"
         fields = [f'"{effect.id}"', axis, inner, members, acted_on, *map(long_text, texts)]
         fields += [str(effect.first_leads)]
         rows.append(f"({', '.join(fields)})")
@@ -205,8 +205,8 @@ def _members(placed: PlacedEffect, used: set[str]) -> str:
         own = [name for name in named if name in placed.parameters]
         tied = [tuple(n.format(axis=placed.axis) for n in pair) for pair in member.tied.items()]
         if set(own) <= used:
-            pairs = listed(f"({repr_text(a)}, {repr_text(b)})" for a, b in tied)
-            rows.append(f"({repr_text(member.title)}, ({listed(map(repr_text, own))}), ({pairs}))")
+            pairs = listed(f"({literal(a)}, {literal(b)})" for a, b in tied)
+            rows.append(f"({literal(member.title)}, ({listed(map(literal, own))}), ({pairs}))")
     return f"({listed(rows)})"
 
 

@@ -1,0 +1,1 @@
+"""Robots of other tools, URDF and MJCF, read and lumped into a platform of two axes."""
