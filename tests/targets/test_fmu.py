@@ -8,9 +8,12 @@ import platform as python_platform
 import shutil
 import subprocess
 import sys
+import zipfile
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -21,17 +24,19 @@ from ptp_symbolic.models.export import export, identifier
 from ptp_symbolic.platform import Platform, read_platform
 from ptp_symbolic.symbolic.program.program import Program, program
 from ptp_symbolic.symbolic.targets.fmi import FMU_2, FMU_3, HEADERS, Fmu
-from ptp_symbolic.symbolic.targets.fmi.archive import SYSTEMS, archive
+from ptp_symbolic.symbolic.targets.fmi.archive import LINUX, archive
 from ptp_symbolic.symbolic.targets.fmi.description import base_units
 from ptp_symbolic.symbolic.targets.fmi.variables import per_second, variables
 from tests.effects.test_backlash_kinds import platform as platform_of_kind
 from tests.targets.c_library import COMPILERS, STRICT
+from tests.targets.machines import NAMES
+from tests.targets.machines import program_of as machine_program
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy runs the FMUs: pip install fmpy")
 pytestmark = [
     pytest.mark.skipif(not COMPILERS, reason="no C compiler on this machine"),
     pytest.mark.skipif(
-        (python_platform.system(), python_platform.machine()) != SYSTEMS[0].here,
+        (python_platform.system(), python_platform.machine()) != LINUX.here,
         reason="the FMUs of these tests are built for Linux on x86_64",
     ),
 ]
@@ -55,7 +60,7 @@ def built(name: str, target: Fmu, folder: Path) -> Path:
     own = identifier(platform_named(name).name)
     files = target.files(program_of(name), own)
     path = folder / f"{own}.fmu"
-    path.write_bytes(archive(files, own, f"fmi{target.version[0]}.c", SYSTEMS[:1]))
+    path.write_bytes(archive(files, own, target.version, [LINUX]))
     return path
 
 
@@ -189,7 +194,7 @@ def test_two_instances_do_not_disturb_each_other(target: Fmu, tmp_path: Path) ->
     ("parameter", "value", "message"),
     [
         ("b_pan", -1.0, "Parameter 'b_pan': -1 N m s/rad lies outside its bounds [0, "),
-        ("F_s_pan", 0.1, "F_s is at least F_c; raise F_s or lower F_c"),
+        ("F_s_pan", 0.1, "F_s_pan = 0.1 N m: F_s is at least F_c; raise F_s or lower F_c"),
         ("gap_pan", float("nan"), "Parameter 'gap_pan': nan rad lies outside its bounds"),
     ],
 )
@@ -204,26 +209,37 @@ def test_an_impossible_parameter_is_an_error_with_a_message(
 
 @pytest.mark.long
 @BOTH
+def test_bodies_that_overlap_at_the_start_are_an_error(target: Fmu, tmp_path: Path) -> None:
+    path = built("elastic_impact", target, tmp_path)
+    found = in_child("impossible", path=path, parameter="theta_gear_pan", value=1.0)
+    assert found["status"] == 3
+    assert "beyond a rigid face" in found["message"]
+
+
+@pytest.mark.long
+@BOTH
 def test_a_token_of_another_model_is_refused(target: Fmu, tmp_path: Path) -> None:
     found = in_child("wrong_token", path=built("thesis-payload", target, tmp_path))
     assert found["refused"]
 
 
 @pytest.mark.long
-@BOTH
-def test_the_sources_compile_without_a_warning(target: Fmu, tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", NAMES)
+def test_the_sources_of_every_effect_compile_without_a_warning(name: str, tmp_path: Path) -> None:
     """With the official headers beside them: a function of another type would be an error."""
-    names = ["thesis-pan-servo", "thesis-payload", "hysteresis_friction", "thesis-full"]
-    for name in names:
-        folder = tmp_path / name
-        for file, text in target.files(program_of(name), "machine").items():
-            (folder / file).parent.mkdir(parents=True, exist_ok=True)
-            (folder / file).write_text(text)
+    for target in (FMU_2, FMU_3):
+        for file, text in target.files(machine_program(name), "machine").items():
+            (tmp_path / target.name / file).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / target.name / file).write_text(text)
         for compiler in COMPILERS:
             source = f"fmi{target.version[0]}.c"
             command = [compiler, *STRICT, "-O0", "-shared", "-fPIC", source, "-o", "own.so", "-lm"]
             done = subprocess.run(
-                command, cwd=folder / "sources", capture_output=True, text=True, check=False
+                command,
+                cwd=tmp_path / target.name / "sources",
+                capture_output=True,
+                text=True,
+                check=False,
             )
             assert done.returncode == 0, done.stderr[:2000]
 
@@ -240,8 +256,6 @@ def test_fmpy_builds_the_sources_by_their_description(tmp_path: Path) -> None:
 
 def rebuilt(path: Path) -> Path:
     """The archive with the binary that FMPy has built of its sources."""
-    import zipfile
-
     from fmpy.util import compile_platform_binary
 
     bare = path.with_name("bare.fmu")
@@ -256,8 +270,6 @@ def rebuilt(path: Path) -> Path:
 @pytest.mark.long
 def test_zig_builds_for_windows_and_macos(tmp_path: Path) -> None:
     """Binaries begin as those of their systems do: ELF, MZ, Mach-O of 64 bits."""
-    import zipfile
-
     pytest.importorskip("ziglang", reason="pip install ziglang")
     platform = read_platform("thesis-ideal")
     (path,), _ = export(platform, "fmu3", tmp_path)
@@ -283,6 +295,16 @@ def test_units_are_powers_of_base_units() -> None:
         "N m/(rad s)",
         "1/s",
     ]
+
+
+def test_a_title_cannot_break_the_description() -> None:
+    title = 'A "title" <with> & what\x00 XML & C */ hold ??/'
+    own = program_of("thesis-payload")
+    hostile = replace(own, equations=replace(own.equations, title=title))
+    files = FMU_3.files(hostile, "payload")
+    root = ElementTree.fromstring(files["modelDescription.xml"])
+    assert root.get("description") == title.replace("\x00", "")
+    assert "*/ hold" not in files["sources/payload.h"]
 
 
 def test_event_indicators_and_modes_are_named_after_what_they_watch() -> None:
