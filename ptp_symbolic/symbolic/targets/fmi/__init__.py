@@ -43,10 +43,10 @@ class Fmu:
     def remarks(self, program: Program) -> list[str]:
         """Inputs that the importer delays, and the systems for which there is no binary."""
         found = late_inputs(program)
-        if missing_systems(self.version):
+        missing = ", ".join(missing_systems(self.version))
+        if missing:
             found.append(
-                f"no binary for {', '.join(missing_systems(self.version))}: install ziglang, or let the"
-                " importer compile the sources inside"
+                f"no binary for {missing}: install ziglang, or let the importer compile the sources"
             )
         return found
 
@@ -115,7 +115,7 @@ def _facts(program: Program, found: Variables) -> str:
         *_table("double HIGHEST", (_bound(p.upper) for p in equations.parameters)),
         "/* Whether a parameter keeps its value once the instance is initialised. */",
         *_table("int FIXED", fixed),
-        "/* Relations between parameters: which, then -1; what is allowed; whether it is strict. */",
+        "/* Relations between parameters: which, and -1; the rule; whether it is strict. */",
         f"static const int RELATED[][{widest}] = {{",
         *(f"    {row}," for row in related or ["{-1}"]),
         "};",
