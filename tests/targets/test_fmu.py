@@ -162,6 +162,20 @@ def test_validators_find_nothing(name: str, target: Fmu, tmp_path: Path) -> None
 
 @pytest.mark.long
 @BOTH
+@pytest.mark.parametrize("name", ["thesis-full", "thesis-pan-servo"])
+def test_the_manipulation_toolbox_finds_nothing(name: str, target: Fmu, tmp_path: Path) -> None:
+    """A second checker, with the schemas and semantic rules of its own."""
+    pytest.importorskip("fmu_manipulation_toolbox", reason="pip install fmu-manipulation-toolbox")
+    command = [str(Path(sys.executable).with_name("fmutool")), "-check", "-input"]
+    path = str(built(name, target, tmp_path))
+    done = subprocess.run([*command, path], capture_output=True, text=True, check=True)
+    said = done.stdout + done.stderr
+    assert f"compliant with FMI-{target.version}" in said
+    assert "No semantic error" in said
+
+
+@pytest.mark.long
+@BOTH
 def test_a_directional_derivative_is_a_central_difference(target: Fmu, tmp_path: Path) -> None:
     """By every state, input and parameter, of every derivative and output, while sliding."""
     path = built("thesis-pan-drive", target, tmp_path)
@@ -170,6 +184,22 @@ def test_a_directional_derivative_is_a_central_difference(target: Fmu, tmp_path:
     scale = np.maximum(1.0, np.abs(exact))
     assert exact.shape[1] == 5 + 1 + 18 and np.count_nonzero(exact) > 20
     assert np.max(np.abs(exact - difference) / scale) < 1e-5
+
+
+@pytest.mark.long
+@BOTH
+def test_an_event_indicator_of_a_gap_is_the_distance_to_its_face(
+    target: Fmu, tmp_path: Path
+) -> None:
+    """Continuous through zero, where importers look for roots: no sign, no jump. Zero lies 1e-10
+    rad past the face, so that whoever lands on zero has touched it.
+    """
+    half_gap = 0.02600540585471551 / 2.0  # rad, of the thesis
+    angles = [half_gap * (0.9 + 0.002 * k) for k in range(101)]
+    path = built("thesis-pan-drive", target, tmp_path)
+    found = np.array(in_child("indicators", path=path, angles=angles))[:, 1]
+    assert found[0] < 0.0 < found[-1]
+    assert np.max(np.abs(found - (np.array(angles) - half_gap - 1e-10))) < 1e-15
 
 
 @pytest.mark.long
@@ -265,6 +295,26 @@ def test_an_importer_builds_the_sources_by_their_description(
     create_zip_archive(own, folder)
     difference, _ = beside("thesis-pan-drive", own, "CoSimulation", 3.0, 3.0)
     assert difference < 1e-5
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("target", "task", "package"),
+    [
+        (FMU_3, "by_ecos", "ecospy"),
+        (FMU_2, "by_ecos", "ecospy"),
+        (FMU_2, "by_libcosim", "libcosimpy"),
+    ],
+)
+def test_importers_in_c_move_it_as_the_simulator(
+    target: Fmu, task: str, package: str, tmp_path: Path
+) -> None:
+    """Six volts for a second, through stick, slip and gap; libcosim knows FMI 2.0 alone."""
+    pytest.importorskip(package, reason=f"pip install {package}")
+    path = built("thesis-pan-drive", target, tmp_path)
+    found = in_child(task, path=path, volts=6.0, seconds=1.0)
+    run = ptp.load("thesis-pan-drive").simulate([0.0, 1.0], u_pan=6.0)
+    assert abs(found - run["theta_pan"][-1]) < 1e-7
 
 
 @pytest.mark.long
