@@ -188,6 +188,8 @@ def impossible(path: str, parameter: str, value: float) -> dict[str, Any]:
 
 def by_ecos(path: str, volts: float, seconds: float) -> float:
     """Angle in rad after co-simulation by Ecos, which is C++."""
+    with contextlib.suppress(OSError):  # Ecos needs what `pip install tbb` brings
+        ctypes.CDLL(f"{sys.prefix}/lib/libtbb.so.12", mode=ctypes.RTLD_GLOBAL)
     from ecospy import EcosSimulation, EcosSimulationStructure
 
     structure = EcosSimulationStructure()
@@ -195,7 +197,7 @@ def by_ecos(path: str, volts: float, seconds: float) -> float:
     structure.add_parameter_set("start", {"own::u_pan": volts})
     with EcosSimulation(structure=structure, step_size=0.01) as simulation:
         simulation.init(parameter_set="start")
-        simulation.step_until(seconds - 0.005)
+        simulation.step(round(seconds / 0.01))
         return float(simulation.get_real("own::theta_pan"))
 
 

@@ -3,6 +3,7 @@
 In a child: an archive that every validator accepts may still end the process that loads it.
 """
 
+import importlib.util
 import json
 import os
 import platform as python_platform
@@ -310,7 +311,8 @@ def test_importers_in_c_move_it_as_the_simulator(
     target: Fmu, task: str, package: str, tmp_path: Path
 ) -> None:
     """Six volts for a second, through stick, slip and gap; libcosim knows FMI 2.0 alone."""
-    pytest.importorskip(package, reason=f"pip install {package}")
+    if importlib.util.find_spec(package) is None:  # found, not loaded: that is left to the child
+        pytest.skip(f"pip install {package}")
     path = built("thesis-pan-drive", target, tmp_path)
     found = in_child(task, path=path, volts=6.0, seconds=1.0)
     run = ptp.load("thesis-pan-drive").simulate([0.0, 1.0], u_pan=6.0)
