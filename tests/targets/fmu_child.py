@@ -1,6 +1,7 @@
 """Tasks with an FMU in a process of their own: JSON in, one line of JSON out."""
 
 import contextlib
+import ctypes
 import json
 import sys
 from collections.abc import Iterator
@@ -103,6 +104,25 @@ def slopes(path: str) -> dict[str, list[list[float]]]:
     return {"exact": exact.tolist(), "difference": difference.tolist()}
 
 
+def indicators(path: str, angles: list[float]) -> list[list[float]]:
+    """Event indicators in model exchange with the gear output at `angles`, all else at rest; no
+    event is handled between.
+    """
+    opened = Opened(path)
+    own = opened.begun("ModelExchange")
+    (own.newDiscreteStates if opened.old else own.updateDiscreteStates)()
+    own.enterContinuousTimeMode()
+    states = opened.states()
+    x, z = (ctypes.c_double * len(states))(), (ctypes.c_double * 2)()
+    found = []
+    for angle in angles:
+        x[states.index("theta_gear_pan")] = angle
+        own.setContinuousStates(x, len(states))
+        own.getEventIndicators(z, 2)
+        found.append(list(z))
+    return found
+
+
 def steps(opened: Opened, own: Any, first: int, last: int, value: float) -> list[float]:
     """States after communication steps of 10 ms."""
     given = next(v.name for v in opened.described.modelVariables if v.causality == "input")
@@ -166,6 +186,38 @@ def impossible(path: str, parameter: str, value: float) -> dict[str, Any]:
     return {"status": status, "message": " ".join(opened.messages)}
 
 
+def by_ecos(path: str, volts: float, seconds: float) -> float:
+    """Angle in rad after co-simulation by Ecos, which is C++."""
+    with contextlib.suppress(OSError):  # Ecos needs what `pip install tbb` brings
+        ctypes.CDLL(f"{sys.prefix}/lib/libtbb.so.12", mode=ctypes.RTLD_GLOBAL)
+    from ecospy import EcosSimulation, EcosSimulationStructure
+
+    structure = EcosSimulationStructure()
+    structure.add_model("own", path)
+    structure.add_parameter_set("start", {"own::u_pan": volts})
+    with EcosSimulation(structure=structure, step_size=0.01) as simulation:
+        simulation.init(parameter_set="start")
+        simulation.step(round(seconds / 0.01))
+        return float(simulation.get_real("own::theta_pan"))
+
+
+def by_libcosim(path: str, volts: float, seconds: float) -> float:
+    """Angle in rad after co-simulation by libcosim, which reads FMUs by the C of FMI Library."""
+    from libcosimpy.CosimExecution import CosimExecution
+    from libcosimpy.CosimObserver import CosimObserver
+    from libcosimpy.CosimSlave import CosimLocalSlave
+
+    execution = CosimExecution.from_step_size(step_size=int(1e7))  # ns
+    own = execution.add_local_slave(CosimLocalSlave(fmu_path=path, instance_name="own"))
+    observer = CosimObserver.create_last_value()
+    execution.add_observer(observer)
+    references = {v.name: v.valueReference for v in read_model_description(path).modelVariables}
+    execution.real_initial_value(own, references["u_pan"], volts)
+    execution.step(round(seconds / 0.01))
+    (angle,) = observer.last_real_values(own, [references["theta_pan"]])
+    return float(angle)
+
+
 def wrong_token(path: str) -> dict[str, bool]:
     """Whether an instance with another token is refused."""
     opened = Opened(path)
@@ -186,7 +238,17 @@ def quiet() -> Iterator[None]:
 
 
 if __name__ == "__main__":
-    tasks = (trajectory, slopes, saved, two, impossible, wrong_token)
+    tasks = (
+        trajectory,
+        slopes,
+        indicators,
+        saved,
+        two,
+        impossible,
+        by_ecos,
+        by_libcosim,
+        wrong_token,
+    )
     task = {t.__name__: t for t in tasks}[sys.argv[1]]
     with quiet():
         result = task(**json.load(sys.stdin))

@@ -38,15 +38,15 @@ class Fmu:
 
     def refuse(self, program: Program) -> str | None:
         """Why no binary can be made here."""
-        return None if systems() else "no C compiler is here; install gcc, or ziglang"
+        return None if systems(self.version) else "no C compiler is here; install gcc, or ziglang"
 
     def remarks(self, program: Program) -> list[str]:
         """Inputs that the importer delays, and the systems for which there is no binary."""
         found = late_inputs(program)
-        if missing_systems():
+        missing = ", ".join(missing_systems(self.version))
+        if missing:
             found.append(
-                f"no binary for {', '.join(missing_systems())}: install ziglang, or let the"
-                " importer compile the sources inside"
+                f"no binary for {missing}: install ziglang, or let the importer compile the sources"
             )
         return found
 
@@ -80,7 +80,7 @@ class Fmu:
 
         Raises InputError where a compiler fails.
         """
-        return {f"{name}.fmu": archive(files, name, f"fmi{self.version[0]}.c", systems())}
+        return {f"{name}.fmu": archive(files, name, self.version, systems(self.version))}
 
 
 FMU_2, FMU_3 = Fmu("2.0"), Fmu("3.0")
@@ -95,12 +95,13 @@ def _input_slopes(program: Program) -> Kernel:
 def _facts(program: Program, found: Variables) -> str:
     """What the C of an instance has to know beside the machine itself."""
     equations = program.equations
-    rules, strict = [], []
+    related, strict = [], []
     for own in equations.requirements:
         symbols = {str(symbol) for symbol in own.holds.free_symbols}
-        names = [p.name for p in equations.parameters if p.name in symbols]
-        rules.append(f"{', '.join(names)}: {own.rule}")
+        places = [str(i) for i, p in enumerate(equations.parameters) if p.name in symbols]
+        related.append(f"{{{', '.join((*places, '-1'))}}}")
         strict.append(str(int(isinstance(own.holds, sp.StrictGreaterThan | sp.StrictLessThan))))
+    widest = max((row.count(",") + 1 for row in related), default=1)
     domain = [f"{own.state} has left its domain: {own.meaning}" for own in equations.limits]
     field = program.kernel("mode_derivative")
     assert field is not None
@@ -108,13 +109,17 @@ def _facts(program: Program, found: Variables) -> str:
     fixed = [str(int(p.variability == FIXED)) for p in found.parameters]
     lines = [
         f"#define CONTINUOUS {len(found.derivatives)} /* states that samplers do not set */",
-        f"#define REQUIREMENTS {len(rules)}",
+        f"#define REQUIREMENTS {len(related)}",
         f"#define DEPENDS_ON_TIME {int(timed)}",
         *_table("double LOWEST", (_bound(p.lower) for p in equations.parameters)),
         *_table("double HIGHEST", (_bound(p.upper) for p in equations.parameters)),
         "/* Whether a parameter keeps its value once the instance is initialised. */",
         *_table("int FIXED", fixed),
-        *_table("char *const RULES", literals(rules)),
+        "/* Relations between parameters: which, and -1; the rule; whether it is strict. */",
+        f"static const int RELATED[][{widest}] = {{",
+        *(f"    {row}," for row in related or ["{-1}"]),
+        "};",
+        *_table("char *const RULES", literals(own.rule for own in equations.requirements)),
         *_table("int STRICT", strict),
         *_table("char *const DOMAIN_TEXTS", literals(domain)),
     ]

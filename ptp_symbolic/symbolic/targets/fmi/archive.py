@@ -19,61 +19,64 @@ EARLIEST = (1980, 1, 1, 0, 0, 0)  # of a zip archive: the same bytes at any time
 
 @dataclass(frozen=True)
 class System:
-    """A system that FMUs run on: its name, folder in FMI 2.0 and 3.0, the ending of its libraries,
-    what the `zig` compiler calls it, and its names in Python where it is this one.
+    """A system that FMUs run on: its name, the folder of its binaries in FMI 3.0 and in 2.0 (None
+    where that has none), their ending, what the `zig` compiler calls it, and its names in Python.
     """
 
     name: str
-    folders: tuple[str, str]
+    folder: str
+    old_folder: str | None
     suffix: str
     zig: str
     here: tuple[str, str]
 
+    def folder_of(self, version: str) -> str | None:
+        """The folder of its binaries in a version of the interface."""
+        return self.old_folder if version == "2.0" else self.folder
 
-SYSTEMS = (
-    System(
-        "Linux", ("linux64", "x86_64-linux"), ".so", "x86_64-linux-gnu.2.17", ("Linux", "x86_64")
-    ),
-    System("Windows", ("win64", "x86_64-windows"), ".dll", "x86_64-windows-gnu", ("Windows", "")),
-    System("macOS", ("darwin64", "x86_64-darwin"), ".dylib", "x86_64-macos", ("Darwin", "x86_64")),
-    System(
-        "macOS (ARM)",
-        ("darwin64-arm", "aarch64-darwin"),
-        ".dylib",
-        "aarch64-macos",
-        ("Darwin", "arm64"),
-    ),
+
+LINUX = System(
+    "Linux", "x86_64-linux", "linux64", ".so", "x86_64-linux-gnu.2.17", ("Linux", "x86_64")
 )
+LINUX_ARM = System(
+    "Linux on ARM", "aarch64-linux", None, ".so", "aarch64-linux-gnu.2.17", ("Linux", "aarch64")
+)
+WINDOWS = System(
+    "Windows", "x86_64-windows", "win64", ".dll", "x86_64-windows-gnu", ("Windows", "AMD64")
+)
+MACOS = System("macOS", "x86_64-darwin", "darwin64", ".dylib", "x86_64-macos", ("Darwin", "x86_64"))
+MACOS_ARM = System(
+    "macOS on ARM", "aarch64-darwin", None, ".dylib", "aarch64-macos", ("Darwin", "arm64")
+)
+SYSTEMS = (LINUX, LINUX_ARM, WINDOWS, MACOS, MACOS_ARM)
 OPTIONS = ["-std=c99", "-O2", "-ffp-contract=off", "-shared", "-fvisibility=hidden"]
 
 
-def systems() -> list[System]:
-    """Systems for which there is a compiler here."""
-    return [system for system in SYSTEMS if _compiler(system)]
+def systems(version: str) -> list[System]:
+    """Systems of a version of the interface for which there is a compiler here."""
+    return [system for system in SYSTEMS if system.folder_of(version) and _compiler(system)]
 
 
-def missing_systems() -> list[str]:
-    """Names of the systems for which there is none."""
-    return [system.name for system in SYSTEMS if not _compiler(system)]
+def missing_systems(version: str) -> list[str]:
+    """Names of those for which there is none."""
+    own = [system for system in SYSTEMS if system.folder_of(version)]
+    return [system.name for system in own if not _compiler(system)]
 
 
-def archive(files: Mapping[str, str], name: str, source: str, built: Sequence[System]) -> bytes:
-    """The archive of `files` with binaries that are built from ``sources/<source>``.
+def archive(files: Mapping[str, str], name: str, version: str, built: Sequence[System]) -> bytes:
+    """The archive of `files` of a version of the interface, with binaries for the systems `built`.
 
     Raises InputError where a compiler fails.
     """
     content = {inside: text.encode() for inside, text in files.items()}
-    version = 0 if source == "fmi2.c" else 1
     with tempfile.TemporaryDirectory() as folder:
         for inside, data in content.items():
             path = Path(folder, inside)
             path.parent.mkdir(exist_ok=True)
             path.write_bytes(data)
         for system in built:
-            if version == 0 and system.folders[0] == "darwin64-arm":
-                continue  # FMI 2.0 has no folder for it
-            made = _compiled(system, Path(folder, "sources"), name, source)
-            content[f"binaries/{system.folders[version]}/{name}{system.suffix}"] = made
+            made = _compiled(system, Path(folder, "sources"), name, f"fmi{version[0]}.c")
+            content[f"binaries/{system.folder_of(version)}/{name}{system.suffix}"] = made
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as zipped:
         for inside, data in content.items():
@@ -97,8 +100,8 @@ def _compiler(system: System) -> list[str]:
 
 def _compiled(system: System, folder: Path, name: str, source: str) -> bytes:
     library = folder / f"{name}{system.suffix}"
-    options = list(OPTIONS) if system.name == "Windows" else [*OPTIONS, "-fPIC"]
-    if system.name == "Linux":
+    options = [*OPTIONS] if system is WINDOWS else [*OPTIONS, "-fPIC"]
+    if system in (LINUX, LINUX_ARM):
         options.append("-Wl,-Bsymbolic")
     command = [*_compiler(system), *options, source, "-o", str(library), "-lm"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)

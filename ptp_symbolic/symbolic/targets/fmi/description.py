@@ -112,6 +112,8 @@ def _interfaces(root: Xml.Element, name: str, old: bool, wrapper: str) -> None:
     else:
         shared["providesAdjointDerivatives"] = "true"
     further = {"ModelExchange": dict[str, str](), "CoSimulation": {}}
+    step = ("completedIntegratorStepNotNeeded", "needsCompletedIntegratorStep")
+    further["ModelExchange"] = {step[0]: "true"} if old else {step[1]: "false"}
     further["CoSimulation"]["canHandleVariableCommunicationStepSize"] = "true"
     for kind, own in further.items():
         element = Xml.SubElement(root, kind, shared | own)

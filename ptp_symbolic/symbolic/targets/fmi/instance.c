@@ -150,12 +150,25 @@ static Instance *make_instance(const char *name, const char *token, int co_simul
     return a;
 }
 
+/* Name the parameters that break a rule, with their values. */
+static int refuse_parameters(Instance *a, int rule)
+{
+    char said[TEXT] = "";
+    for (int i = 0; RELATED[rule][i] >= 0; i++) {
+        const int p = RELATED[rule][i];
+        const size_t used = strlen(said);
+        snprintf(said + used, sizeof said - used, "%s%s = %.9g %s", i > 0 ? ", " : "",
+                 model_parameter_names[p], a->now.p[p], model_parameter_units[p]);
+    }
+    return fail(a, "Impossible %s: %s", said, RULES[rule]);
+}
+
 static int parameters_can_be(Instance *a)
 {
     model_margins(a->now.p, a->margin);
     for (int i = 0; i < REQUIREMENTS; i++)
         if (STRICT[i] ? !(a->margin[i] > 0.0) : !(a->margin[i] >= 0.0))
-            return fail(a, "Parameters %s", RULES[i]);
+            return refuse_parameters(a, i);
     return 1;
 }
 
@@ -267,12 +280,35 @@ static double next_sample(const Instance *a)
     return earliest;
 }
 
+/* Refuse rigid bodies that overlap, and a joint that moves where friction holds it in its gap. */
+static int can_begin(Instance *a)
+{
+#if RIGID
+    Moment *now = &a->now;
+    model_machine *s = &now->machine;
+    model_guards(now->t, now->x, now->u, now->p, s->modes, s->guards);
+    for (int c = 0; c < CONTACTS; c++) {
+        const double *g = s->guards + 3 * FRICTIONS + 4 * c;
+        const int joint = CONTACT_RATES[c][1], rule = CONTACT_RATES[c][2];
+        if (rule != 0 && fabs(g[0]) > g[1] + FACE_WIDTH)
+            return fail(a, "The gear output starts %.6g ahead of the joint, beyond a rigid face at "
+                        "%.6g; start it within the gap", g[0], g[1]);
+        if (rule == 2 && s->modes[FRICTIONS + 2 * c + 1] == 0.0 && now->x[joint] != 0.0)
+            return fail(a, "State '%s' starts at %.6g in the gap, where friction holds the joint; "
+                        "start it at rest", model_state_names[joint], now->x[joint]);
+    }
+#else
+    (void)a;
+#endif
+    return 1;
+}
+
 /* End the initialisation. */
 static int start(Instance *a)
 {
     Moment *now = &a->now;
     now->stale = 1;
-    if (!refresh(a) || !is_inside(a))
+    if (!refresh(a) || !is_inside(a) || !can_begin(a))
         return 0;
 #if SAMPLERS > 0
     if (plan_samples(&now->machine, now->t, now->x, now->u, now->p) != MODEL_DONE)
