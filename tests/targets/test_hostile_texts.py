@@ -263,6 +263,20 @@ def test_a_title_is_no_tex() -> None:
     assert r"\input{" not in plain and plain.count(r"\end{document}") == 1
 
 
+@pytest.mark.long
+def test_a_document_of_hostile_texts_compiles(tmp_path: Path) -> None:
+    """TeX stops at the first error: nothing in a title, a meaning or a reference is a command."""
+    if shutil.which("pdflatex") is None:
+        pytest.skip("pdflatex is not installed")
+    few = replace(HOSTILE, parameters=HOSTILE.parameters[:3], contribute=opposed_by_three)
+    with on_trial(few):
+        files = render_derivation(turntable(" ".join(TEXTS["tex"].split()) + TEXTS["html"]))
+    for name, content in files.items():
+        (tmp_path / name).write_bytes(content.encode() if isinstance(content, str) else content)
+    words = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "-no-shell-escape"]
+    subprocess.run([*words, "derivation.tex"], cwd=tmp_path, check=True, capture_output=True)
+
+
 def test_texts_are_no_html() -> None:
     """A page has the elements that it has with plain texts, whatever files and effects say."""
 
