@@ -70,6 +70,13 @@ def test_names_of_a_robot_cannot_enter_the_file(tmp_path: Path) -> None:
     assert found == expected
 
 
+def test_attributes_of_a_model_cannot_enter_the_file(tmp_path: Path) -> None:
+    text = HEAD.replace('ref="5"', 'springdamper="1&#10;[evil]&#10;a=1" actuatorfrcrange="&#x85;"')
+    file, printed = new_from(tmp_path, text, "--pan", "pan", "--tilt", "tilt")
+    assert "springdamper = '1\\n[evil]\\na=1'" in printed
+    assert "evil" not in tomllib.loads(file.read_text("utf-8"))
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

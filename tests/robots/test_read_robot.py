@@ -88,6 +88,17 @@ def test_one_axis_alone(axis: str, joint: str, tmp_path: Path) -> None:
     assert off_mujoco(held, imported.platform, (joint,)) < 1e-10
 
 
+def test_an_axis_that_stands_upright_tilts_where_nothing_pulls(tmp_path: Path) -> None:
+    """Without gravity no axis is vertical: a tilt axis alone may point anywhere."""
+    text = f"<mujoco>{UPSIDE_DOWN.partition('<mujoco>')[2]}".replace('range="-20 30"', "")
+    text = text.replace("<worldbody>", '<option gravity="0 0 0"/><worldbody>')
+    frozen = ("up", "swing", "tilt")
+    imported = ptp.read_robot(written(tmp_path, text), tilt="pan", freeze=frozen)
+    for name in (*frozen, "roll"):
+        text = re.sub(rf'<joint name="{name}"[^>]*/>', "", text)
+    assert off_mujoco(text, imported.platform, ("pan",)) < 1e-10
+
+
 RIGID = {
     "J_pan": 0.05,
     "J_x_tilt": 0.012,

@@ -137,7 +137,7 @@ def _refuse_others(
 def _frame(
     robot: Robot, joints: Mapping[str, Joint]
 ) -> tuple[FloatArray, dict[str, float], list[str]]:
-    """Axes of the platform at zero angles in the base, signs of the joints, what was bent."""
+    """Axes of the platform at zero angles in the base, signs of the joints, notes."""
     directions = {a: robot.pose(j.child).rotation @ j.axis for a, j in joints.items()}
     g = float(np.linalg.norm(robot.gravity))
     up: FloatArray = -robot.gravity / g if g else directions.get("pan", np.eye(3)[2])
@@ -145,6 +145,7 @@ def _frame(
     notes: list[str] = []
     if "pan" not in directions:
         y = directions["tilt"]
+        up = up if g else _square_to(y)
         z = up - _across(y, up, joints["tilt"], "the vertical", notes) * y
     else:
         signs["pan"] = 1.0 if directions["pan"] @ up >= 0.0 else -1.0
@@ -160,7 +161,7 @@ def _frame(
             y = directions["tilt"]
             y = y - _across(y, z, joints["tilt"], "the pan axis", notes) * z
         else:
-            y = np.cross(z, np.eye(3)[0 if abs(z[0]) < 0.9 else 1])
+            y = _square_to(z)
     y, z = y / np.linalg.norm(y), z / np.linalg.norm(z)
     if signs.get("pan", 1.0) < 0.0:
         notes.append(f"theta_pan is minus the angle of {shown(joints['pan'].name)}: it turns down")
@@ -184,6 +185,11 @@ def _across(axis: FloatArray, other: FloatArray, joint: Joint, of: str, notes: l
             " as a right angle"
         )
     return along
+
+
+def _square_to(axis: FloatArray) -> FloatArray:
+    """Some direction [3] across a unit vector."""
+    return np.cross(axis, np.eye(3)[0 if abs(axis[0]) < 0.9 else 1])
 
 
 def _degrees(angle: float) -> str:

@@ -51,7 +51,8 @@ class ImportedPlatform:
         """The platform as TOML, with the notes and what is lost as comments at its head."""
         lines = [f"A platform of ptp-symbolic, from {shown(self.file.name)}.", *self.notes]
         lines += ["Not in this file:", *(f"  {line}" for line in self.lost)] if self.lost else []
-        head = [f"#:schema {SCHEMA_NAME}", *(f"# {line}" for line in lines), ""]
+        plain = ("".join(c if c.isprintable() else "?" for c in line) for line in lines)
+        head = [f"#:schema {SCHEMA_NAME}", *(f"# {line}" for line in plain), ""]
         return "\n".join(head) + "\n" + platform_text(self.platform)
 
 

@@ -194,7 +194,9 @@ class _Tree:
             return Joint(name, kind, parent, child, pose, element)
         turn, drawn = self.compiler.turn, own.number("ref", 0.0) * self.compiler.turn
         lost = [
-            f"{word} = {own.attributes[word]}" for word in LOST_OF_JOINTS if word in own.attributes
+            f"{word} = {shown(own.attributes[word])}"
+            for word in LOST_OF_JOINTS
+            if word in own.attributes
         ]
         if drawn:
             lost.append(f"ref: theta is {drawn:g} rad less than the angle of the file")
