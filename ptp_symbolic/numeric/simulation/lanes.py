@@ -164,9 +164,11 @@ def integrate_in_lanes(
     sizes = (module.LANES, len(model.input_names), p.shape[1], module.PREPARED, waves.shape[1])
     done = np.zeros(len(p), np.bool_)
 
+    run = run_lanes()
+
     def portion(rows: IntArray) -> None:
         runs = (p, x, drive, rows, times, limits, all_stops, offsets)
-        run_lanes(
+        run(
             (module.lane_derivative, module.lane_sines),
             module.prepare,
             tableau(),
