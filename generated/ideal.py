@@ -455,28 +455,28 @@ def lane_sines(w):
         w[i] = lane_sin(w[i])
 
 
-LANES = 16
+LANES = 64
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def lane_derivative(w):
-    """Write the time derivatives of 16 states side by side into w.
+    """Write the time derivatives of 64 states side by side into w.
 
-    w [20 * 16]: rows of 16 numbers, t, then x, u, p, c of prepare and dx.
+    w [20 * 64]: rows of 64 numbers, t, then x, u, p, c of prepare and dx.
     """
-    for lane in range(16):
-        theta_tilt = w[32 + lane]
-        omega_pan = w[48 + lane]
-        omega_tilt = w[64 + lane]
-        tau_pan = w[80 + lane]
-        tau_tilt = w[96 + lane]
-        b_pan = w[176 + lane]
-        b_tilt = w[192 + lane]
-        inertia_pan_sin_sq_tilt = w[208 + lane]
-        inertia_pan = w[224 + lane]
-        inverse_mass_tilt = w[240 + lane]
-        w[256 + lane] = omega_pan
-        w[272 + lane] = omega_tilt
+    for lane in range(64):
+        theta_tilt = w[128 + lane]
+        omega_pan = w[192 + lane]
+        omega_tilt = w[256 + lane]
+        tau_pan = w[320 + lane]
+        tau_tilt = w[384 + lane]
+        b_pan = w[704 + lane]
+        b_tilt = w[768 + lane]
+        inertia_pan_sin_sq_tilt = w[832 + lane]
+        inertia_pan = w[896 + lane]
+        inverse_mass_tilt = w[960 + lane]
+        w[1024 + lane] = omega_pan
+        w[1088 + lane] = omega_tilt
         sin_tilt = lane_sin(theta_tilt)
         inertia_pan_per_sin_tilt = inertia_pan_sin_sq_tilt * sin_tilt
         coriolis = inertia_pan_per_sin_tilt * omega_pan * lane_cos(theta_tilt)
@@ -484,10 +484,10 @@ def lane_derivative(w):
         mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
         inverse_mass_pan = 1.0 / mass_pan
         accel_pan = force_pan * inverse_mass_pan
-        w[288 + lane] = accel_pan
+        w[1152 + lane] = accel_pan
         force_tilt = -b_tilt * omega_tilt + coriolis * omega_pan + tau_tilt
         accel_tilt = force_tilt * inverse_mass_tilt
-        w[304 + lane] = accel_tilt
+        w[1216 + lane] = accel_tilt
 
 
-# END sha256 b0b9d205cbd3fa76942f855072044fbd7805e863c2f3965d6e60aeae76e6d223
+# END sha256 5cab2421fa330cc4c6199addabba3620404251fb1864cdb4ca1ed8a59200bd70

@@ -936,33 +936,33 @@ def lane_sines(w):
         w[i] = lane_sin(w[i])
 
 
-LANES = 16
+LANES = 64
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def lane_derivative(w):
-    """Write the time derivatives of 16 states side by side into w.
+    """Write the time derivatives of 64 states side by side into w.
 
-    w [33 * 16]: rows of 16 numbers, t, then x, u, p, c of prepare and dx.
+    w [33 * 64]: rows of 64 numbers, t, then x, u, p, c of prepare and dx.
     """
-    for lane in range(16):
-        theta_tilt = w[32 + lane]
-        omega_pan = w[48 + lane]
-        omega_tilt = w[64 + lane]
-        tau_pan = w[80 + lane]
-        tau_tilt = w[96 + lane]
-        b_pan = w[288 + lane]
-        b_tilt = w[304 + lane]
-        inertia_pan_sin_cos_tilt = w[336 + lane]
-        inertia_pan_sin_sq_tilt = w[352 + lane]
-        coupling_cos_tilt = w[368 + lane]
-        coupling_sin_tilt = w[384 + lane]
-        gravity_cos_tilt = w[400 + lane]
-        gravity_sin_tilt = w[416 + lane]
-        inertia_tilt = w[432 + lane]
-        inertia_pan = w[448 + lane]
-        w[464 + lane] = omega_pan
-        w[480 + lane] = omega_tilt
+    for lane in range(64):
+        theta_tilt = w[128 + lane]
+        omega_pan = w[192 + lane]
+        omega_tilt = w[256 + lane]
+        tau_pan = w[320 + lane]
+        tau_tilt = w[384 + lane]
+        b_pan = w[1152 + lane]
+        b_tilt = w[1216 + lane]
+        inertia_pan_sin_cos_tilt = w[1344 + lane]
+        inertia_pan_sin_sq_tilt = w[1408 + lane]
+        coupling_cos_tilt = w[1472 + lane]
+        coupling_sin_tilt = w[1536 + lane]
+        gravity_cos_tilt = w[1600 + lane]
+        gravity_sin_tilt = w[1664 + lane]
+        inertia_tilt = w[1728 + lane]
+        inertia_pan = w[1792 + lane]
+        w[1856 + lane] = omega_pan
+        w[1920 + lane] = omega_tilt
         cos_tilt = lane_cos(theta_tilt)
         sin_tilt = lane_sin(theta_tilt)
         inertia_pan_per_sin_tilt = (
@@ -991,9 +991,9 @@ def lane_derivative(w):
         mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
         inverse_determinant = 1.0 / (inertia_tilt * mass_pan - (mass_pan_tilt * mass_pan_tilt))
         accel_pan = inverse_determinant * (force_pan * inertia_tilt - force_tilt * mass_pan_tilt)
-        w[496 + lane] = accel_pan
+        w[1984 + lane] = accel_pan
         accel_tilt = inverse_determinant * (-force_pan * mass_pan_tilt + force_tilt * mass_pan)
-        w[512 + lane] = accel_tilt
+        w[2048 + lane] = accel_tilt
 
 
-# END sha256 c56bca7f43eb0b8be2adb74b4cc7b4786ec1a3a9378936a2cbfd6978aaafaaee
+# END sha256 b29fe468b3c1dc418f0a38d9ac408a209d369e78ceda526dc134747092fbda6b

@@ -28,7 +28,7 @@ NUMBA = Language(
         "pi": "math.pi",
     },
 )
-LANES = 16  # states side by side: fewer are unrolled before LLVM looks for vectors
+LANES = 64  # states side by side: calls cost little among so many, and the first cache holds them
 IN_LANES = Language(
     "numba, several states at once",
     {**NUMBA.operations, "sin": "lane_sin({0})", "cos": "lane_cos({0})"},
