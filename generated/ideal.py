@@ -312,13 +312,13 @@ def state_derivative(t, x, u, p, dx):
 vector_field, events, inverse_dynamics = mode_derivative, guards, equation_error
 
 
-@njit(error_model="numpy", nogil=True, forceinline=True)
+@njit(error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def lane_quarter(x):
     """Return the multiple of pi/2 nearest to x: adding 1.5 * 2**52 rounds to a whole number."""
     return (0.6366197723675814 * x + 6755399441055744.0) - 6755399441055744.0
 
 
-@njit(error_model="numpy", nogil=True, forceinline=True)
+@njit(error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def lane_polynomials(x, n):
     """Return sine and cosine of x - n pi/2, which lies within pi/4."""
     r = ((x - n * 1.5707963267341256) - n * 6.077100506303966e-11) - n * 2.0222662487959506e-21
@@ -335,7 +335,7 @@ def lane_polynomials(x, n):
     return sine, least + (((1.0 - least) - half) + z * z * cosine)
 
 
-@njit(error_model="numpy", nogil=True, forceinline=True)
+@njit(error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def lane_sin(x):
     """Return the sine of x in rad."""
     n = lane_quarter(x)
@@ -345,7 +345,7 @@ def lane_sin(x):
     return -value if (turn < 0.0) | (turn > 1.5) else value
 
 
-@njit(error_model="numpy", nogil=True, forceinline=True)
+@njit(error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def lane_cos(x):
     """Return the cosine of x in rad."""
     n = lane_quarter(x)
@@ -362,26 +362,26 @@ def lane_sines(w):
         w[i] = lane_sin(w[i])
 
 
-LANES = 16
+LANES = 64
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def lane_derivative(w):
-    """Write the time derivatives of 16 states side by side into w.
+    """Write the time derivatives of 64 states side by side into w.
 
-    w [20 * 16]: rows of 16 numbers, t, then x, u, p, c of prepare and dx.
+    w [20 * 64]: rows of 64 numbers, t, then x, u, p, c of prepare and dx.
     """
-    for lane in range(16):
-        theta_tilt = w[32 + lane]
-        omega_pan = w[48 + lane]
-        omega_tilt = w[64 + lane]
-        tau_pan = w[80 + lane]
-        tau_tilt = w[96 + lane]
-        b_pan = w[176 + lane]
-        b_tilt = w[192 + lane]
-        inertia_pan_sin_sq_tilt = w[208 + lane]
-        inertia_pan = w[224 + lane]
-        inverse_mass_tilt = w[240 + lane]
+    for lane in range(64):
+        theta_tilt = w[128 + lane]
+        omega_pan = w[192 + lane]
+        omega_tilt = w[256 + lane]
+        tau_pan = w[320 + lane]
+        tau_tilt = w[384 + lane]
+        b_pan = w[704 + lane]
+        b_tilt = w[768 + lane]
+        inertia_pan_sin_sq_tilt = w[832 + lane]
+        inertia_pan = w[896 + lane]
+        inverse_mass_tilt = w[960 + lane]
         cos_tilt = lane_cos(theta_tilt)
         sin_tilt = lane_sin(theta_tilt)
         inertia_pan_per_sin_tilt = inertia_pan_sin_sq_tilt * sin_tilt
@@ -389,11 +389,11 @@ def lane_derivative(w):
         force_pan = -b_pan * omega_pan - 2.0 * coriolis * omega_tilt + tau_pan
         mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
         force_tilt = -b_tilt * omega_tilt + coriolis * omega_pan + tau_tilt
-        w[256 + lane] = omega_pan
-        w[272 + lane] = omega_tilt
+        w[1024 + lane] = omega_pan
+        w[1088 + lane] = omega_tilt
         inverse_mass_pan = 1.0 / mass_pan
-        w[288 + lane] = force_pan * inverse_mass_pan
-        w[304 + lane] = force_tilt * inverse_mass_tilt
+        w[1152 + lane] = force_pan * inverse_mass_pan
+        w[1216 + lane] = force_tilt * inverse_mass_tilt
 
 
 # What follows is for fits and diagnoses; no function above uses it.
@@ -416,4 +416,4 @@ EFFECTS = (
      "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
      "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
 )
-# END sha256 e2772e7fc2797180f537aeb521b818bb7623c5f222fb0b0f8d7ea39663295d4c
+# END sha256 cf102a59e09208aa2d3549cb497fdee9637583013a2c6ee33c46b7bb2d11956a

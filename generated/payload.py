@@ -511,13 +511,13 @@ def state_derivative(t, x, u, p, dx):
 vector_field, events, inverse_dynamics = mode_derivative, guards, equation_error
 
 
-@njit(error_model="numpy", nogil=True, forceinline=True)
+@njit(error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def lane_quarter(x):
     """Return the multiple of pi/2 nearest to x: adding 1.5 * 2**52 rounds to a whole number."""
     return (0.6366197723675814 * x + 6755399441055744.0) - 6755399441055744.0
 
 
-@njit(error_model="numpy", nogil=True, forceinline=True)
+@njit(error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def lane_polynomials(x, n):
     """Return sine and cosine of x - n pi/2, which lies within pi/4."""
     r = ((x - n * 1.5707963267341256) - n * 6.077100506303966e-11) - n * 2.0222662487959506e-21
@@ -534,7 +534,7 @@ def lane_polynomials(x, n):
     return sine, least + (((1.0 - least) - half) + z * z * cosine)
 
 
-@njit(error_model="numpy", nogil=True, forceinline=True)
+@njit(error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def lane_sin(x):
     """Return the sine of x in rad."""
     n = lane_quarter(x)
@@ -544,7 +544,7 @@ def lane_sin(x):
     return -value if (turn < 0.0) | (turn > 1.5) else value
 
 
-@njit(error_model="numpy", nogil=True, forceinline=True)
+@njit(error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def lane_cos(x):
     """Return the cosine of x in rad."""
     n = lane_quarter(x)
@@ -561,31 +561,31 @@ def lane_sines(w):
         w[i] = lane_sin(w[i])
 
 
-LANES = 16
+LANES = 64
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def lane_derivative(w):
-    """Write the time derivatives of 16 states side by side into w.
+    """Write the time derivatives of 64 states side by side into w.
 
-    w [33 * 16]: rows of 16 numbers, t, then x, u, p, c of prepare and dx.
+    w [33 * 64]: rows of 64 numbers, t, then x, u, p, c of prepare and dx.
     """
-    for lane in range(16):
-        theta_tilt = w[32 + lane]
-        omega_pan = w[48 + lane]
-        omega_tilt = w[64 + lane]
-        tau_pan = w[80 + lane]
-        tau_tilt = w[96 + lane]
-        b_pan = w[288 + lane]
-        b_tilt = w[304 + lane]
-        inertia_pan_sin_cos_tilt = w[336 + lane]
-        inertia_pan_sin_sq_tilt = w[352 + lane]
-        coupling_cos_tilt = w[368 + lane]
-        coupling_sin_tilt = w[384 + lane]
-        gravity_cos_tilt = w[400 + lane]
-        gravity_sin_tilt = w[416 + lane]
-        inertia_tilt = w[432 + lane]
-        inertia_pan = w[448 + lane]
+    for lane in range(64):
+        theta_tilt = w[128 + lane]
+        omega_pan = w[192 + lane]
+        omega_tilt = w[256 + lane]
+        tau_pan = w[320 + lane]
+        tau_tilt = w[384 + lane]
+        b_pan = w[1152 + lane]
+        b_tilt = w[1216 + lane]
+        inertia_pan_sin_cos_tilt = w[1344 + lane]
+        inertia_pan_sin_sq_tilt = w[1408 + lane]
+        coupling_cos_tilt = w[1472 + lane]
+        coupling_sin_tilt = w[1536 + lane]
+        gravity_cos_tilt = w[1600 + lane]
+        gravity_sin_tilt = w[1664 + lane]
+        inertia_tilt = w[1728 + lane]
+        inertia_pan = w[1792 + lane]
         cos_tilt = lane_cos(theta_tilt)
         sin_tilt = lane_sin(theta_tilt)
         inertia_pan_per_sin_tilt = (cos_tilt * inertia_pan_sin_cos_tilt
@@ -598,12 +598,12 @@ def lane_derivative(w):
             + cos_tilt * gravity_cos_tilt + gravity_sin_tilt * sin_tilt + tau_tilt)
         mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
         mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
-        w[464 + lane] = omega_pan
-        w[480 + lane] = omega_tilt
+        w[1856 + lane] = omega_pan
+        w[1920 + lane] = omega_tilt
         inverse_determinant = 1.0 / (inertia_tilt * mass_pan - (mass_pan_tilt * mass_pan_tilt))
-        w[496 + lane] = (inverse_determinant * (force_pan * inertia_tilt
+        w[1984 + lane] = (inverse_determinant * (force_pan * inertia_tilt
             - force_tilt * mass_pan_tilt))
-        w[512 + lane] = inverse_determinant * (-force_pan * mass_pan_tilt + force_tilt * mass_pan)
+        w[2048 + lane] = inverse_determinant * (-force_pan * mass_pan_tilt + force_tilt * mass_pan)
 
 
 # What follows is for fits and diagnoses; no function above uses it.
@@ -629,4 +629,4 @@ EFFECTS = (
      "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
      "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
 )
-# END sha256 1d44ca6a0b00856583726d740e885f31b71525dc8812145a05be58ecae449e96
+# END sha256 f05f8599567b8c94b5f3395e97aeb62ce64e1e6b5e91d18258be48f791c0d4b1

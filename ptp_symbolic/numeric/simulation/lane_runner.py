@@ -5,13 +5,15 @@ Everything that it calls stands here: numba keeps compiled code until this file 
 
 import math
 import warnings
+from collections.abc import Callable
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit, types
 from numba.core.errors import NumbaExperimentalFeatureWarning
 
-from ptp_symbolic.numeric.simulation.kernels.records import KERNEL
+from ptp_symbolic.numeric.simulation.kernels.records import INNER, KERNEL
 
 STAGES = 12
 NEW, EXTRA = 12, 13  # rows of the slopes: at the end of the step, then three for dense output
@@ -35,8 +37,8 @@ _RUNS = (_M, _M, _I, _I, _V, _V, _V, _I, types.float64[:, :, ::1], _I, types.boo
 _C = types.float64[:, :, ::1]
 _LANES = (*[_V] * 4, _M, _M, _M, *[_V] * 3, _M, *[_V] * 3, _M, *[_V] * 5, _M, _C, _C, _M, _M, _V)
 _LANES += (*[_I] * 5, _T, _M, _V, _V)
-_kernel = njit(**KERNEL)
-_inlined = njit(forceinline=True, **KERNEL)  # per lane: records are long arguments
+_kernel = njit(**INNER)
+_inlined = njit(forceinline=True, **INNER)  # per lane: records are long arguments
 
 
 class Lanes(NamedTuple):
@@ -424,21 +426,7 @@ def _needs_output(runs, all_lanes):
     return inside
 
 
-@njit(
-    types.void(
-        types.UniTuple(_IN_PLACE, 2),  # derivative, sines
-        _PREPARE,
-        types.Tuple((_M, _T, _I, _V)),  # tableau
-        types.Tuple((_V, _M, _I)),  # pieces of all signals
-        types.boolean,  # whether these are more than constants
-        types.float64[:, :, ::1],  # waves of all signals
-        types.Tuple(_RUNS),
-        types.Tuple(_LANES),
-    ),
-    cache=True,
-    **KERNEL,
-)
-def run_lanes(functions, prepare, method, table, moves, waves, runs, all_lanes):
+def _run_lanes(functions, prepare, method, table, moves, waves, runs, all_lanes):
     """Integrate the trajectories of `Runs` that are to do, in `Lanes`."""
     runs, all_lanes = Runs(*runs), Lanes(*all_lanes)
     lanes, count, after, open_lanes = len(all_lanes.time), waves.shape[1], 0, 0
@@ -459,3 +447,24 @@ def run_lanes(functions, prepare, method, table, moves, waves, runs, all_lanes):
             if all_lanes.who[lane] >= 0 and _accept(lane, runs, all_lanes):
                 all_lanes.who[lane] = -1
                 open_lanes -= 1
+
+
+@lru_cache(maxsize=1)
+def run_lanes() -> Callable[..., None]:
+    """The compiled `_run_lanes`: some seconds once on a new machine."""
+    compiled = njit(
+        types.void(
+            types.UniTuple(_IN_PLACE, 2),  # derivative, sines
+            _PREPARE,
+            types.Tuple((_M, _T, _I, _V)),  # tableau
+            types.Tuple((_V, _M, _I)),  # pieces of all signals
+            types.boolean,  # whether these are more than constants
+            types.float64[:, :, ::1],  # waves of all signals
+            types.Tuple(_RUNS),
+            types.Tuple(_LANES),
+        ),
+        cache=True,
+        **KERNEL,
+    )
+    run: Callable[..., None] = compiled(_run_lanes)
+    return run

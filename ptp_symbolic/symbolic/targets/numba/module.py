@@ -41,7 +41,7 @@ MATRICES = {
     "gx": "rows as g of guards, columns as STATE_NAMES",
     "gp": "rows as g of guards, columns as PARAMETERS",
 }
-LANES = 16  # states side by side: fewer are unrolled before LLVM looks for vectors
+LANES = 64  # states side by side: calls cost little among so many, and the first cache holds them
 IN_LANES = Language(
     "numba, several states at once",
     {**NUMBA.operations, "sin": "lane_sin({0})", "cos": "lane_cos({0})"},

@@ -11,13 +11,13 @@ from numba import njit
 # copied from here on
 
 
-@njit(error_model="numpy", nogil=True, forceinline=True)
+@njit(error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def lane_quarter(x):
     """Return the multiple of pi/2 nearest to x: adding 1.5 * 2**52 rounds to a whole number."""
     return (0.6366197723675814 * x + 6755399441055744.0) - 6755399441055744.0
 
 
-@njit(error_model="numpy", nogil=True, forceinline=True)
+@njit(error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def lane_polynomials(x, n):
     """Return sine and cosine of x - n pi/2, which lies within pi/4."""
     r = ((x - n * 1.5707963267341256) - n * 6.077100506303966e-11) - n * 2.0222662487959506e-21
@@ -34,7 +34,7 @@ def lane_polynomials(x, n):
     return sine, least + (((1.0 - least) - half) + z * z * cosine)
 
 
-@njit(error_model="numpy", nogil=True, forceinline=True)
+@njit(error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def lane_sin(x):
     """Return the sine of x in rad."""
     n = lane_quarter(x)
@@ -44,7 +44,7 @@ def lane_sin(x):
     return -value if (turn < 0.0) | (turn > 1.5) else value
 
 
-@njit(error_model="numpy", nogil=True, forceinline=True)
+@njit(error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def lane_cos(x):
     """Return the cosine of x in rad."""
     n = lane_quarter(x)
