@@ -94,7 +94,7 @@ def test_a_measurement_of_several_segments_says_which_lines_to_keep(tmp_path: Pa
     kept = content.split("\n")[:end]
     assert_same(read_log(written(tmp_path, "\n".join(kept) + "\n"), bench(tmp_path)))
     kept = [*lines[:7], *content.split("\n")[end + 2 : end + 21]]
-    assert len(read_log(written(tmp_path, "\n".join(kept) + "\n"), bench(tmp_path)).t) == 12
+    assert len(read_log(written(tmp_path, "\n".join(kept) + "\n"), bench(tmp_path)).time) == 12
 
 
 @pytest.mark.parametrize(
