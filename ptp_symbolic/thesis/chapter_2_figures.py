@@ -183,7 +183,7 @@ def friction_figures() -> list[ThesisFigure]:
         ),
         (
             "fig_2_16",
-            "Bristles (Fig. 2.16): their mean bend follows the angle of the body and stops growing"
+            "Bristles (Fig. 2.16): their mean deflection follows the angle and stops growing"
             " where it slides; the torque grows to 110 % of F_s in 1 s.",
             (_bend_panel,),
         ),

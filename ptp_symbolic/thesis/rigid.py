@@ -73,7 +73,7 @@ def ideal_items() -> list[Item]:
     torques = ideal()
     check = (
         "inverse dynamics along Table 5.2; half of peak to peak after both transitions. The text"
-        " gives one significant digit, which both round to."
+        " gives 'around 0.01' for both, to which 0.014 and 0.007 round at two decimals."
     )
     return [
         compared(

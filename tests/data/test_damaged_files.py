@@ -5,8 +5,10 @@ import random
 import signal
 import struct
 import sys
+import time
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from itertools import repeat
 from pathlib import Path
 from typing import IO
 
@@ -192,23 +194,67 @@ def test_rows_of_parquet_and_of_old_matlab_are_counted_first(tmp_path: Path) -> 
         read_log(tmp_path / "run.mat", bench(tmp_path))
 
 
-def test_a_sheet_that_unfolds_is_refused(tmp_path: Path) -> None:
-    """A file of half a megabyte, a part of which has 450 MB."""
+def packed_sheet(path: Path, part: str, pieces: Iterable[bytes]) -> Path:
+    """An Excel file with a part made of `pieces`."""
     openpyxl = pytest.importorskip("openpyxl")
     from zipfile import ZIP_DEFLATED, ZipFile
 
-    openpyxl.Workbook().save(tmp_path / "whole.xlsx")
-    with (
-        ZipFile(tmp_path / "whole.xlsx") as whole,
-        ZipFile(tmp_path / "run.xlsx", "w", ZIP_DEFLATED) as packed,
-    ):
+    openpyxl.Workbook().save(path.with_suffix(".whole"))
+    with ZipFile(path.with_suffix(".whole")) as whole, ZipFile(path, "w", ZIP_DEFLATED) as packed:
         for entry in whole.infolist():
-            packed.writestr(entry, whole.read(entry), ZIP_DEFLATED)
-        with packed.open("xl/sharedStrings.xml", "w") as shared:
-            for _ in range(450):
-                shared.write(b" " * 1_000_000)
-    with pytest.raises(InputError, match=r"run\.xlsx: unfolds into 45. MB, and 400 MB are allowed"):
-        read_log(tmp_path / "run.xlsx", bench(tmp_path))
+            if entry.filename != part:
+                packed.writestr(entry, whole.read(entry), ZIP_DEFLATED)
+        with packed.open(part, "w") as file:
+            for piece in pieces:
+                file.write(piece)
+    return path
+
+
+SHEET = "xl/worksheets/sheet1.xml"
+SPACE = b"http://schemas.openxmlformats.org/spreadsheetml/2006/main"
+BEGIN, END = b'<worksheet xmlns="%s"><sheetData>' % SPACE, b"</sheetData></worksheet>"
+NOISE = b"".join(b"%d " % (k * 2654435761 % 2**32) for k in range(40_000))
+
+
+@pytest.mark.parametrize(
+    ("part", "pieces", "said"),
+    [
+        ("xl/sharedStrings.xml", repeat(b" " * 1_000_000, 450), r"45. MB, and 400 MB are allowed"),
+        (
+            SHEET,
+            [BEGIN, *repeat(b"<row><c><v>0</v></c></row>" * 10_000, 100), END],
+            r"sheet1\.xml unfolds into \d+ times its size, and 100 times are allowed",
+        ),
+        pytest.param(
+            SHEET,
+            [BEGIN, *repeat(NOISE + b"<row/>" * 2_100_000, 10), END],
+            r"more than 5000000 cells",
+            marks=pytest.mark.long,
+        ),
+        (
+            SHEET,
+            [BEGIN, b'<row r="1"><c r="A1"><v>0</v></c></row><row r="2000000"/>', END],
+            r"row 1048577, column 0, and 1048576 rows, 1000 columns",
+        ),
+        pytest.param(
+            SHEET,
+            [BEGIN, *(b'<row><c r="ALL%d"><v>0</v></c></row>' % k for k in range(1, 21_000)), END],
+            r"row 20001, column 1000",
+            marks=pytest.mark.long,
+        ),
+        (SHEET, [BEGIN, b'<row><c r="XFD1"><v>0</v></c></row>', END], r"row 1, column 16384"),
+    ],
+    ids=["bytes", "ratio", "tags", "gap", "padded", "column"],
+)
+def test_a_sheet_that_unfolds_is_refused(
+    part: str, pieces: Iterable[bytes], said: str, tmp_path: Path
+) -> None:
+    """Files of a few MB at most that took more than a minute, or memory, to be refused."""
+    path = packed_sheet(tmp_path / "run.xlsx", part, pieces)
+    started = time.process_time() + os.times().children_user
+    with pytest.raises(InputError, match=said):
+        read_log(path, bench(tmp_path))
+    assert time.process_time() + os.times().children_user - started < 30.0
 
 
 def test_without_the_library_the_extra_is_named(

@@ -76,6 +76,27 @@ def test_a_measurement_without_x_values_has_its_times_from_their_start_and_step(
     )
 
 
+def test_a_measurement_of_several_segments_says_which_lines_to_keep(tmp_path: Path) -> None:
+    """Kept as the line says, the file is read."""
+    lines = measurement().rstrip("\n").split("\n")
+    short = [*lines[6:14], *lines[14:26]]
+    content = "\n".join([*lines, "", *short, ""])
+    end = len(lines)
+    with pytest.raises(InputError) as error:
+        read_log(written(tmp_path, content), bench(tmp_path))
+    said = (
+        f"has 2 segments: lines 8 to {end} ({ROWS} rows of X_Value, volt, angle, Comment); lines"
+        f" {end + 3} to {end + 21} (12 rows of X_Value, volt, angle, Comment). Keep lines 1 to 7 and"
+        f" those of one segment, 8 to {end} for the longest,"
+    )
+    assert said in str(error.value)
+    assert "\n" not in str(error.value)
+    kept = content.split("\n")[:end]
+    assert_same(read_log(written(tmp_path, "\n".join(kept) + "\n"), bench(tmp_path)))
+    kept = [*lines[:7], *content.split("\n")[end + 2 : end + 21]]
+    assert len(read_log(written(tmp_path, "\n".join(kept) + "\n"), bench(tmp_path)).time) == 12
+
+
 @pytest.mark.parametrize(
     ("content", "message"),
     [

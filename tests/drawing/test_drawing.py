@@ -2,18 +2,22 @@
 
 import math
 import re
+from itertools import combinations
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+import sympy as sp
+from matplotlib.textpath import TextPath
 from scipy.spatial.transform import Rotation
 
 from ptp_symbolic.platform import Platform, preset_names, read_platform
 from ptp_symbolic.report.diagnosis import render_diagnosis
 from ptp_symbolic.report.drawing import PlatformDrawing, drawn, svg_text, tikz_text
-from ptp_symbolic.report.drawing.scene import Label, Scene, Stroke
+from ptp_symbolic.report.drawing.scene import Label, Scene, Stroke, placed
 from ptp_symbolic.report.drawing.space import POSE, Space, projected, space_of
 from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.documents.latex import latex_of
 from tests.drawing.platforms import (
     carriage,
     offset_platform,
@@ -166,6 +170,34 @@ def test_labels_lie_over_all_lines() -> None:
     svg, tikz = svg_text(scene), tikz_text(scene)
     assert svg.rindex("<path") < svg.index("<text")
     assert tikz.rindex(r"\draw") < tikz.index(r"\node")
+
+
+FOOTNOTE_PT, PT_PER_CM = 8.0, 28.45
+
+
+def on_paper(label: Label) -> tuple[float, float, float, float]:
+    """Left, bottom, right and top in cm of a label, by the letters that Matplotlib sets."""
+    letters = TextPath((0, 0), f"${latex_of(sp.sympify(label.text))}$", FOOTNOTE_PT, usetex=False)
+    box = letters.get_extents()
+    (x, y), width, height = placed(label), box.width / PT_PER_CM, box.height / PT_PER_CM
+    left = x if label.direction[0] > 0.5 else x - width / (1 if label.direction[0] < -0.5 else 2)
+    return left, y - height / 2, left + width, y + height / 2
+
+
+@pytest.mark.parametrize(
+    "offset",
+    [(0.1, 0.04, 0.06), (0.1, 0.001, 0.001), (0.01, 0.01, 0.01), (-0.1, 0.05, -0.02)],
+)
+def test_no_symbol_lies_over_another(offset: tuple[float, float, float]) -> None:
+    """Offsets of a payload: their names were drawn over each other."""
+    names = ("c_x_payload", "c_y_payload", "c_z_payload")
+    scene = drawing_of(offset_platform(**dict(zip(names, offset, strict=True)))).frames
+    symbols = [label for label in scene.labels if isinstance(label.text, sp.Expr)]
+    assert {*names} <= {str(label.text) for label in symbols}
+    for one, other in combinations(symbols, 2):
+        (a, b, c, d), (e, f, g, h) = on_paper(one), on_paper(other)
+        clear = max(a - g, e - c, b - h, f - d)
+        assert clear > 0.0, (one.text, other.text)
 
 
 def test_an_axis_without_a_drive_has_no_motor() -> None:

@@ -13,6 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 from ptp_symbolic.cli.report import thesis
+from ptp_symbolic.platform import read_platform
 from ptp_symbolic.report.derivation import has_warning
 from ptp_symbolic.report.pdf import compile_pdf
 from ptp_symbolic.thesis import document
@@ -67,6 +68,22 @@ def test_a_round_trip_is_never_counted_as_computed(
     text = str(files["thesis.tex"])
     assert f"{summary['round_trip']['agree']} recovered" in text
     assert f"{summary['computed']['agree']} agree" in text
+
+
+def test_notes_say_what_was_computed(rows: list[dict[str, object]]) -> None:
+    """Section 5.4 has another shaft and friction than the preset; 0.007 has one digit, not 0.01."""
+    row = {str(r["id"]): r for r in rows}
+    for name in ("pan", "tilt"):
+        own = row[f"fig_5_{1 if name == 'pan' else 2}.{name}_coupling_amplitude"]
+        assert f"{own['computed']:.2f}" == "0.01"
+        assert "two decimals" in str(own["check"])
+    preset = read_platform("thesis-pan-drive")
+    printed = {"d_shaft_pan": 0.0, "F_c_pan": 0.2267, "F_s_pan": 0.5578, "F_v_pan": 13.5844}
+    assert all(p.value != printed.get(p.name) for p in preset.parameters)
+    said = str(row["section_5_4.step.final_angle"]["check"])
+    assert "omega > 0 in both directions" in said
+    assert "d_shaft_pan = 0" in said
+    assert "omega < 0" in str(row["section_5_4.step_backward.final_angle"]["check"])
 
 
 def test_every_picture_says_what_its_curves_are(

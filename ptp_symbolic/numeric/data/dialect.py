@@ -10,7 +10,7 @@ Source: National Instruments, Specification for the LabVIEW Measurement File (.l
 import csv
 import io
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from ptp_symbolic.errors import InputError
@@ -18,6 +18,8 @@ from ptp_symbolic.numeric.data.table import is_unit
 
 LABVIEW = b"LabVIEW Measurement"
 _LABVIEW_END = b"***End_of_Header***"
+_LABVIEW_CHANNELS = "Channels"  # begins the header of a segment
+MOST_LISTED = 6  # segments in a message
 _LABVIEW_SEPARATORS = {"Tab": b"\t", "Comma": b","}
 _LABVIEW_COMMENT = "Comment"
 
@@ -37,16 +39,12 @@ def measurement(path: object, content: bytes) -> Measurement:
     """Read the headers of a measurement whose text begins with `LABVIEW`.
 
     Times are its one column of X values, or follow from X0 and Delta_X. Raises InputError for
-    several measurements in a file, for an X column of every channel, and for a damaged header.
+    several segments in a file, for an X column of every channel, and for a damaged header.
     """
     first = content.find(_LABVIEW_END)
     header, rest = content[: max(first, 0)], content[first:].partition(b"\n")[2]
     if first < 0 or rest.count(_LABVIEW_END) != 1:
-        raise InputError(
-            f"{path}: a LabVIEW measurement has one header of its own and one of its channels, and"
-            f" this file {rest.count(_LABVIEW_END) if first >= 0 else 0} of channels;"
-            " save one measurement into each file."
-        )
+        raise InputError(_which_segment(path, content.decode().split("\n")))
     channels, _, rows = rest.partition(_LABVIEW_END)
     facts = _facts(header)
     separator = _LABVIEW_SEPARATORS.get(facts.get("Separator", "Tab"), b"\t")
@@ -67,6 +65,33 @@ def measurement(path: object, content: bytes) -> Measurement:
     if facts.get("X_Columns") == "No":
         body = _with_times(path, body, separator, channels)
     return Measurement(tuple(headings), tuple(units), separator, body, first_line)
+
+
+def _which_segment(path: object, lines: Sequence[str]) -> str:
+    """What to do about a file that has not one segment: one header of channels with its rows."""
+    ends = [k for k, line in enumerate(lines) if line.startswith(_LABVIEW_END.decode())]
+    begins = [k for k, line in enumerate(lines) if line.startswith(_LABVIEW_CHANNELS)]
+    others = [k for k, line in enumerate(lines) if line.startswith(LABVIEW.decode())]
+    found = []
+    for begin in begins:
+        names = next((end + 1 for end in ends if end > begin), len(lines))
+        last = min((k for k in (*begins, *others) if k > begin), default=len(lines))
+        rows = [k for k in range(names + 1, last) if lines[k].strip()]
+        if rows:
+            found.append((begin + 1, rows[-1] + 1, len(rows), lines[names].split()))
+    if not found:
+        return (
+            f"{path}: a LabVIEW measurement has one header of its own and one of its channels, and"
+            " this file 0 of channels; save one measurement into each file."
+        )
+    listed = [f"lines {a} to {b} ({n} rows of {', '.join(names)})" for a, b, n, names in found]
+    a, b, _, _ = max(found, key=lambda segment: segment[2])
+    more = f" and {len(listed) - MOST_LISTED} more" if len(listed) > MOST_LISTED else ""
+    return (
+        f"{path}: this LabVIEW measurement has {len(listed)} segments:"
+        f" {'; '.join(listed[:MOST_LISTED])}{more}. Keep lines 1 to {found[0][0] - 1} and those of"
+        f" one segment, {a} to {b} for the longest, or save one measurement into each file."
+    )
 
 
 def _facts(header: bytes) -> Mapping[str, str]:

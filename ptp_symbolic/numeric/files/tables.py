@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.files.content import (
     MOST_COLUMNS,
-    MOST_ROWS,
+    MOST_NUMBERS,
     NUMERIC,
     Column,
     Part,
@@ -60,37 +60,75 @@ def parquet_parts(path: Path) -> Sequence[Part]:
 
 
 MOST_BYTES = 400_000_000  # of all that is compressed within a file
+SMALL_BYTES = 20_000_000  # of a part that may be compressed as well as it will
+MOST_TIMES = 100  # that a larger part is longer than it is compressed; sheets of numbers reach 20
+MOST_TAGS = 20_000_000  # of XML, four to a cell: a million rows of four columns have 18 million
+SHEET_ROWS = 1_048_576  # of Excel itself
+CHUNK = 1_000_000  # bytes unfolded at a time
 
 
 def excel_text(path: Path) -> str:
     """The rows of the first sheet that has some, as the text of a CSV.
 
-    Raises InputError for a file that unfolds into over 400 MB or too many cells, and where openpyxl
-    is not installed, and whatever openpyxl raises.
+    Raises InputError for a file that unfolds into over 400 MB, into a hundred times its size, or
+    into more cells than a log has, and where openpyxl is not installed, and whatever openpyxl
+    raises. What a sheet says of its own size is not used: some programs write it wrong.
     """
     try:
         from openpyxl import load_workbook
     except ImportError as error:
         raise InputError(lacking(path, "Excel", "openpyxl", "excel")) from error
-    with ZipFile(path) as archive:
-        unfolded = sum(entry.file_size for entry in archive.infolist())
-    if unfolded > MOST_BYTES:
-        raise InputError(
-            f"{path}: unfolds into {unfolded / 1e6:.0f} MB, and {MOST_BYTES / 1e6:.0f} MB are"
-            " allowed; save the log as CSV."
-        )
+    _refuse_unfolding(path)
     book = load_workbook(path, read_only=True, data_only=True, keep_links=False)
     for sheet in book.worksheets:
-        sheet.reset_dimensions()  # which some programs write wrong
+        sheet.reset_dimensions()
         text = io.StringIO()
         write = csv.writer(text, lineterminator="\n").writerow
-        for number, row in enumerate(sheet.iter_rows(values_only=True, max_col=MOST_COLUMNS + 1)):
-            if number > MOST_ROWS:
-                raise InputError(f"{path}: has more than {MOST_ROWS} rows; split the log.")
+        cells = 0
+        for number, row in enumerate(sheet.iter_rows(values_only=True), 1):
+            cells += len(row)
+            if number > SHEET_ROWS or len(row) > MOST_COLUMNS or cells > MOST_NUMBERS:
+                raise InputError(
+                    f"{path}: its sheet '{sheet.title}' has a cell in row {number}, column"
+                    f" {len(row)}, and {SHEET_ROWS} rows, {MOST_COLUMNS} columns and"
+                    f" {MOST_NUMBERS} cells in all are read; delete what is no log, or save the log"
+                    " as CSV."
+                )
             write([_cell(value) for value in row])
         if text.getvalue().strip(",\n"):
             return _trimmed(text.getvalue())
     return ""
+
+
+def _refuse_unfolding(path: Path) -> None:
+    """Raise InputError for a file too large to be read in seconds: by the list of its parts, then
+    by a count of the tags in them, which is a hundred times faster than to read them.
+    """
+    with ZipFile(path) as archive:
+        parts = archive.infolist()
+        unfolded = sum(part.file_size for part in parts)
+        if unfolded > MOST_BYTES:
+            raise InputError(
+                f"{path}: unfolds into {unfolded / 1e6:.0f} MB, and {MOST_BYTES / 1e6:.0f} MB are"
+                " allowed; save the log as CSV."
+            )
+        for part in parts:
+            if part.file_size > max(SMALL_BYTES, MOST_TIMES * part.compress_size):
+                times = part.file_size / max(part.compress_size, 1)
+                raise InputError(
+                    f"{path}: its part {part.filename} unfolds into {times:.0f} times its size, and"
+                    f" {MOST_TIMES} times are allowed; save the log as CSV."
+                )
+        tags = 0
+        for part in parts:
+            with archive.open(part) as file:
+                while chunk := file.read(CHUNK):
+                    tags += chunk.count(b"<")
+                    if tags > MOST_TAGS:
+                        raise InputError(
+                            f"{path}: has more than {MOST_TAGS // 4} cells, too many for an Excel"
+                            " file to be read; save the log as CSV."
+                        )
 
 
 def _cell(value: Any) -> str:

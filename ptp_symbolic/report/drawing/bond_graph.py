@@ -20,6 +20,8 @@ REACH = 1.5  # from a junction to its elements, in cm
 BESIDE = 2.6  # from the joints to the fields that they share, in cm
 HALF_HEIGHT = 0.22  # of a letter with its room, in cm
 GAP = 0.35  # between two labels side by side, in cm
+SHORTEST = 0.75  # bond of a source, in cm
+BELOW = 0.058  # half the width of a letter of what stands below a node, in cm
 JUNCTIONS = ("0", "1")
 TWO_PORTS = ("TF", "MTF", "GY")
 BARB, STROKE, NUMBER_AWAY = 0.17, 0.15, 0.19  # cm
@@ -55,10 +57,27 @@ def _half_width(node: Node) -> float:
     return max(0.2, letters * HALF_CHARACTER + 0.1)
 
 
+def _beneath(node: Node) -> tuple[float, float]:
+    """How far what stands below a node reaches to the left and to the right of it, in cm."""
+    law = short_law(node)
+    if not law or node.kind not in (*JUNCTIONS, *TWO_PORTS):
+        return 0.0, 0.0
+    letters = node.name if law == modulus_name(node) else sp.sstr(node.law)
+    half = BELOW * (len(letters.replace("_", "")) + 1)
+    if node.kind in TWO_PORTS:
+        return half, half
+    far = BESIDE_STROKE + 2 * half
+    return (far, 0.0) if node.name == node.axis else (0.0, far)
+
+
 def bond_graph_tikz(graph: BondGraph, axes: tuple[str, ...]) -> str:
     """The picture; one that is wider than the text is made smaller."""
     places = _places(graph, axes)
-    lines = [line for node in graph.nodes for line in _node(node, places[node.name])]
+    lines = [
+        line
+        for node in graph.nodes
+        for line in _node(node, places[node.name], _away(node.axis or "", axes))
+    ]
     for number, bond in enumerate(graph.bonds, 1):
         ends = (graph.node(bond.tail), graph.node(bond.head))
         lines += _bond(number, ends, bond.at_head, places)
@@ -75,7 +94,7 @@ def _places(graph: BondGraph, axes: tuple[str, ...]) -> dict[str, Point]:
     """Every chain on a line of its own, joints in one column, shared elements right of them."""
     places: dict[str, Point] = {}
     y = 0.0
-    rows = [_row(graph, axis) for axis in axes]
+    rows = [_row(graph, axis, _away(axis, axes)) for axis in axes]
     column = max(row[axis][0] for row, axis in zip(rows, axes, strict=True))
     for row, axis in zip(rows, axes, strict=True):
         top = max(py for _, py in row.values())
@@ -92,11 +111,20 @@ def _places(graph: BondGraph, axes: tuple[str, ...]) -> dict[str, Point]:
     return places
 
 
-def _row(graph: BondGraph, axis: str) -> dict[str, Point]:
-    """The chain of one axis on y = 0 with what hangs on it, but for elements of several axes."""
+def _away(axis: str, axes: tuple[str, ...]) -> float:
+    """Up (1) or down (-1): from the joint of `axis`, away from the other axes."""
+    return 1.0 if axis == axes[0] and len(axes) > 1 else -1.0
+
+
+def _row(graph: BondGraph, axis: str, away: float) -> dict[str, Point]:
+    """The chain of one axis on y = 0 with what hangs on it, but for elements of several axes.
+
+    Bonds to those leave the joint to the right and not on the side `away`: so what hangs on it goes
+    to the right there, where its rate is written to the left, and to the left on the other side.
+    """
     chain = _chain(graph, axis)
     places: dict[str, Point] = {}
-    x, room = 0.0, 0.0
+    x, room, below = 0.0, 0.0, 0.0
     for number, name in enumerate(chain):
         hanging = _hanging(graph, name, axis, chain)
         before = name == chain[0] and hanging and graph.node(hanging[0]).kind.endswith(("Se", "Sf"))
@@ -104,14 +132,22 @@ def _row(graph: BondGraph, axis: str) -> dict[str, Point]:
         behind = name == axis and hanging and _single(graph)
         right = hanging.pop(0) if behind else None
         sides = hanging[::2], hanging[1::2]
-        width = max((sum(_span(graph, n) for n in side) for side in sides), default=0.0) / 2
-        x += max(STEP, room + width) if number else 0.0
-        room = width
+        widths = [[_span(graph, n) for n in side] for side in sides]
+        aside = name == axis and not _single(graph)
+        turns = [
+            ((w[0] - sum(w)) / 2 if up == away else (sum(w) - w[-1]) / 2) if aside and w else 0.0
+            for w, up in zip(widths, (1.0, -1.0), strict=True)
+        ]
+        width = max(sum(w) / 2 + turn for w, turn in zip(widths, turns, strict=True))
+        reach = _beneath(graph.node(name))
+        x += max(STEP, room + width, below + reach[0] + GAP / 2) if number else 0.0
+        room, below = width, reach[1]
         places[name] = (x, 0.0)
-        for side, up in zip(sides, (1.0, -1.0), strict=True):
-            places |= _beside(graph, side, x, up, REACH)
+        for side, turn, up in zip(sides, turns, (1.0, -1.0), strict=True):
+            places |= _beside(graph, side, x - turn, up, REACH)
         if left:
-            places[left] = (x - REACH, 0.0)
+            ends = _half_width(graph.node(left)) + _half_width(graph.node(name))
+            places[left] = (x - max(REACH, ends + SHORTEST), 0.0)
         if right:
             places[right] = (x + REACH + 0.2, 0.0)
     return places
@@ -173,15 +209,16 @@ def _beside(graph: BondGraph, names: list[str], x: float, up: float, y: float) -
     return places
 
 
-def _node(node: Node, place: Point) -> Iterator[str]:
+def _node(node: Node, place: Point, away: float) -> Iterator[str]:
     x, y = place
     yield rf"\node at ({x:.2f},{y:.2f}) {{${label(node)}$}};"
     law = short_law(node)
     if law and node.kind in (*JUNCTIONS, *TWO_PORTS):
         anchor, side = ("center", 0.0) if node.kind in TWO_PORTS else ("west", BESIDE_STROKE)
+        lift = -0.36
         if node.name == node.axis:  # bonds of a joint go to the right
-            anchor, side = "east", -BESIDE_STROKE
-        at = f"({x + side:.2f},{y - 0.36:.2f})"
+            anchor, side, lift = "east", -BESIDE_STROKE, 0.46 if away > 0.0 else lift
+        at = f"({x + side:.2f},{y + lift:.2f})"
         yield rf"\node[anchor={anchor},inner sep=0.5pt,font=\scriptsize] at {at} {{${law}$}};"
 
 

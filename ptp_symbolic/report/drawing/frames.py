@@ -16,6 +16,7 @@ ARC = {"pan": 2.2, "tilt": 3.2}  # radii of the arcs of the joint angles in cm
 LEG, HALF_FORK, TABLE = 2.6, 1.45, 0.6  # of the machine's outline, in cm
 BODY, CARRIAGE = (0.95, 0.95, 0.5), (0.6, 0.4, 0.4)  # half the size of a box in cm
 SHADE = 0.06
+MARK = 0.17  # radius of the mark of a centre of mass in cm
 ALONG_STEP = 0.72  # where beside a coordinate of a centre of mass its name is
 RAIL = (-0.8, 5.2)  # from end to end, in cm
 TURNED = {"pan": 1, "tilt": 0}  # between which axes of two frames the angle is drawn
@@ -117,8 +118,7 @@ def _centre(centre: Centre) -> Iterator[Item]:
         here = projected(at + ALONG_STEP * step)
         yield Label(here, centre.body.com[k], _away(here, frame.origin + way / 2, step))
         at = at + step
-    (x, y), radius = projected(centre.at), 0.17
-    yield from _centre_mark((x, y), radius)
+    yield from _centre_mark(projected(centre.at), MARK)
 
 
 def _away(here: Point, middle: Vector, step: Vector) -> Point:

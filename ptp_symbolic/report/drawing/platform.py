@@ -6,8 +6,17 @@ from dataclasses import dataclass
 
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.report.drawing.drive_train import DriveTrain, drive_train
-from ptp_symbolic.report.drawing.frames import LEG, drawn_frames
-from ptp_symbolic.report.drawing.scene import Item, Label, Point, Scene, balloon, line
+from ptp_symbolic.report.drawing.frames import LEG, MARK, drawn_frames
+from ptp_symbolic.report.drawing.scene import (
+    Item,
+    Label,
+    Point,
+    Scene,
+    apart,
+    balloon,
+    box_of,
+    line,
+)
 from ptp_symbolic.report.drawing.space import Space, projected, space_of
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.derivation.sites import (
@@ -81,9 +90,12 @@ def drawn(
         for number, e in enumerate(effects, start=1)
     )
     space = space_of(equations)
-    items = drawn_frames(equations, space)
-    bare = Scene(tuple(items), "")
-    items += _beside(bare, space, equations.rigid.sliding, effects, key)
+    bare = drawn_frames(equations, space)
+    left = Scene(tuple(bare), "").bounds()[0]
+    numbers = list(_beside(left, space, equations.rigid.sliding, effects, key))
+    taken = [box_of(item) for item in numbers if isinstance(item, Label)]
+    taken += [(projected(centre.at), MARK) for centre in space.centres]
+    items = [*apart(bare, taken), *numbers]
     return PlatformDrawing(
         Scene(tuple(items), f"Frames, axes and centres of mass of {platform.title}"),
         tuple(
@@ -131,14 +143,13 @@ def _numbered(
 
 
 def _beside(
-    scene: Scene,
+    left: float,
     space: Space,
     sliding: Collection[str],
     effects: Sequence[Sited],
     key: Sequence[KeyEntry],
 ) -> Iterator[Item]:
     """The numbers of what sits on the base and on bodies: at centres of mass, else at the left."""
-    left = scene.bounds()[0]
     found: dict[tuple[Point, Point | None], list[KeyEntry]] = {}
     for effect, entry in zip(effects, key, strict=True):
         for site in effect.sites:

@@ -11,6 +11,8 @@ FULL_TURN = 2.0 * math.pi
 STEPS_OF_A_TURN = 60  # of the polygon that stands for a circle or an arc
 HALF_CHARACTER = 0.085  # half the width of a letter in cm, on average
 HALF_LINE = 0.2  # half the height of a line of text in cm
+MOVES = (0.25, 0.4, 0.6, 0.85, 1.1)  # in cm, of a label that would lie over another one
+DIRECTIONS = 12  # in which it may be moved
 
 
 @dataclass(frozen=True)
@@ -73,13 +75,50 @@ def _extent(item: Item) -> Iterator[Point]:
     if isinstance(item, Stroke):
         yield from item.points
         return
-    written = str(item.text).replace("_", "")
-    half = HALF_CHARACTER * max(len(written), 2)
-    x, y = placed(item)
-    across = half * item.direction[0] if abs(item.direction[0]) > 0.5 else 0.0
+    (x, y), half = box_of(item)
     for side in (-half, half):
-        yield x + across + side, y - HALF_LINE
-        yield x + across + side, y + HALF_LINE
+        yield x + side, y - HALF_LINE
+        yield x + side, y + HALF_LINE
+
+
+Box = tuple[Point, float]
+
+
+def box_of(label: Label) -> Box:
+    """The middle of a label and half its width, in cm; it is HALF_LINE high from there."""
+    half = HALF_CHARACTER * max(len(str(label.text).replace("_", "")), 2)
+    x, y = placed(label)
+    beside = abs(label.direction[0]) > 0.5
+    return (x + math.copysign(half, label.direction[0]) * beside, y), half
+
+
+def apart(items: Iterable[Item], taken: Iterable[Box] = ()) -> list[Item]:
+    """`items`, each label that would lie over what is `taken`, or over an earlier label, at the
+    nearest place that is free.
+    """
+    found: list[Item] = []
+    boxes = list(taken)
+    for item in items:
+        if isinstance(item, Label):
+            free = (p for p in _nearby(item) if not any(_touch(box_of(p), b) for b in boxes))
+            item = next(free, item)
+            boxes.append(box_of(item))
+        found.append(item)
+    return found
+
+
+def _nearby(label: Label) -> Iterator[Label]:
+    yield label
+    (x, y), (dx, dy) = label.at, label.direction
+    for far in MOVES:
+        for k in range(DIRECTIONS):
+            turn = math.atan2(dy, dx) + FULL_TURN * k / DIRECTIONS
+            yield replace(label, at=(x + far * math.cos(turn), y + far * math.sin(turn)))
+
+
+def _touch(one: Box, other: Box) -> bool:
+    ((ax, ay), a), ((bx, by), b) = one, other
+    return abs(ax - bx) < a + b and abs(ay - by) < 2 * HALF_LINE
 
 
 def placed(label: Label) -> Point:
