@@ -355,7 +355,7 @@ def lane_cos(x):
     return -value if (turn > 0.5) | (turn < -1.5) else value
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def lane_sines(w):
     """Replace every angle of w [k] in rad by its sine."""
     for i in range(len(w)):
@@ -416,4 +416,4 @@ EFFECTS = (
      "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
      "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
 )
-# END sha256 cf102a59e09208aa2d3549cb497fdee9637583013a2c6ee33c46b7bb2d11956a
+# END sha256 90177655ba109a563385eb06625b45536a7d6fe152f72962c7969cf8a7fc250a

@@ -554,7 +554,7 @@ def lane_cos(x):
     return -value if (turn > 0.5) | (turn < -1.5) else value
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def lane_sines(w):
     """Replace every angle of w [k] in rad by its sine."""
     for i in range(len(w)):
@@ -629,4 +629,4 @@ EFFECTS = (
      "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
      "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
 )
-# END sha256 f05f8599567b8c94b5f3395e97aeb62ce64e1e6b5e91d18258be48f791c0d4b1
+# END sha256 c3662c27237c89a58cce1a57cb078970affb6dd2781c7311331faed88e3f82a6

@@ -44,7 +44,14 @@ def exported(platform: Platform, target: str) -> Exported:
     name = identifier(platform.name)
     files: Mapping[str, str | bytes] = own.files(whole, name)
     if isinstance(own, Packed):
-        files = own.pack(own.files(whole, name), name)
+        try:
+            files = own.pack(own.files(whole, name), name)
+        except OSError as error:
+            place = error.filename or "The folder for temporary files"
+            raise InputError(
+                f"{place} cannot be written: {error.strerror}. Make room, or set TMPDIR to another"
+                " folder."
+            ) from error
     return Exported(files, tuple(own.remarks(whole)))
 
 

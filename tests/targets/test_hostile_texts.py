@@ -162,7 +162,11 @@ def test_names_that_are_words_are_names_in_octave(whole: Program, tmp_path: Path
 
 
 def test_names_that_are_others_are_the_same_everywhere_and_said(whole: Program) -> None:
-    said = [tuple(t.remarks(whole)) for t in TARGETS if t.name not in ("mjcf", "urdf")]
+    said = [
+        tuple(text for text in target.remarks(whole) if "no binary for" not in text)
+        for target in TARGETS
+        if target.name not in ("mjcf", "urdf")
+    ]
     assert len(set(said)) == 1
     assert "'double' is a word of a language: its variable is double_" in said[0]
     assert "'double_' is a word of a language: its variable is double__" in said[0]

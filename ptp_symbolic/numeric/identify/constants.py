@@ -83,6 +83,7 @@ ROUNDING = 1.0 / np.sqrt(12.0)  # counts; standard deviation of rounding; derive
 SAME = 1e-3  # 1; relative difference of directions or values that count as one; scaled
 NOTHING = 1e-10  # 1; share of a sum of 1e5 squares, above its rounding of 2e-11; derived
 ROUNDS = 40  # 1; at most, until a loop has converged; halvings: to 1e-12; derived
+WITH_TANGENTS = 3  # 1; cost of a sample with its sensitivities over one without; derived
 
 # Sequences
 LENGTHS = (8.0, 4.0, 2.0, 1.0, 0.5)  # s; lengths of windows that are tried, by halves; scaled

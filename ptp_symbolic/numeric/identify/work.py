@@ -5,7 +5,7 @@ import time
 from dataclasses import dataclass, field, replace
 from math import inf
 
-WITH_TANGENTS = 3  # 1; cost of a sample with its sensitivities over one without; measured
+from ptp_symbolic.numeric.identify.constants import WITH_TANGENTS
 
 
 @dataclass(eq=False)

@@ -20,7 +20,7 @@ from ptp_symbolic.symbolic.targets.c99.language import DOUBLE
 from ptp_symbolic.symbolic.targets.fmi.archive import archive, missing_systems, systems
 from ptp_symbolic.symbolic.targets.fmi.description import build_description, description
 from ptp_symbolic.symbolic.targets.fmi.variables import FIXED, Variables, variables
-from ptp_symbolic.symbolic.targets.target import late_inputs
+from ptp_symbolic.symbolic.targets.target import remarks_of_functions
 
 HEADERS = {
     "2.0": ("fmi2TypesPlatform.h", "fmi2FunctionTypes.h", "fmi2Functions.h"),
@@ -41,8 +41,8 @@ class Fmu:
         return None if systems(self.version) else "no C compiler is here; install gcc, or ziglang"
 
     def remarks(self, program: Program) -> list[str]:
-        """Inputs that the importer delays, and the systems for which there is no binary."""
-        found = late_inputs(program)
+        """Names that are others, inputs that the importer delays, systems without a binary."""
+        found = remarks_of_functions(program)
         missing = ", ".join(missing_systems(self.version))
         if missing:
             found.append(

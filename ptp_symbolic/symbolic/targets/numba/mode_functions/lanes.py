@@ -54,7 +54,7 @@ def lane_cos(x):
     return -value if (turn > 0.5) | (turn < -1.5) else value
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def lane_sines(w):
     """Replace every angle of w [k] in rad by its sine."""
     for i in range(len(w)):
