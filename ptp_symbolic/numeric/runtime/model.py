@@ -231,6 +231,8 @@ class Model:
 
         With the names of those that were `given`, the message calls the others default.
         """
+        if not self.module.REQUIREMENTS:
+            return
         margin = np.zeros(len(self.module.REQUIREMENTS))
         self.module.margins(p, margin)
         values = dict(zip(self.parameter_names, p, strict=True))

@@ -25,7 +25,6 @@ from ptp_symbolic.numeric.simulation.ahead import (
 )
 from ptp_symbolic.numeric.simulation.events.crossing import enter, jump_by_delay, pass_event
 from ptp_symbolic.numeric.simulation.events.location import (
-    TIME_RESOLUTION,
     first_violation,
     is_finite,
     is_outside,
@@ -43,9 +42,11 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     LENGTH,
     OUTSIDE,
     RUN_TYPES,
+    SHORTEST,
     SOURCES,
     STEPS,
     TIME,
+    TIME_RESOLUTION,
     TOO_FAST,
     Inputs,
     Record,
@@ -154,9 +155,6 @@ def leave(method, equations, inputs, t, length, t_new, x, step, watch, tangents,
     copy(step.end, x)
     flush(x)
     record.clock[TIME] = t_new
-
-
-SHORTEST = 1e-11  # s
 
 
 @merged

@@ -33,6 +33,7 @@ from ptp_symbolic.numeric.simulation.methods.propagator import new_propagator
 from ptp_symbolic.numeric.simulation.methods.steps import ROSENBROCK, RUNGE_KUTTA
 from ptp_symbolic.numeric.simulation.sampling import new_sampling
 from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
+from ptp_symbolic.numeric.simulation.smooth_integration import integrate_smooth, is_smooth
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -229,6 +230,26 @@ def _integrate(
     rough_tangents: bool,
 ) -> Solution:
     """One run, as `integrate` has it."""
+    stands_still = held or not any(model.module.INPUT_ACTS)
+    limits = np.array([accuracy.relative, accuracy.largest_step, accuracy.most_steps])
+    if method == EXPLICIT and (s is None or not s.shape[1]) and is_smooth(model):
+        status, reached, state, states, energies, steps = integrate_smooth(
+            model, p, x, inputs, stands_still, stops, times, limits, accuracy.absolute, ledger
+        )
+        none, tangents_of_none = np.zeros((0, 3)), np.zeros((len(times), len(x), 0))
+        return Solution(
+            status,
+            reached,
+            state,
+            states,
+            tangents_of_none,
+            energies,
+            none,
+            0,
+            steps,
+            np.zeros(0),
+            np.zeros(0),
+        )
     n, nu, module = len(x), len(model.input_names), model.module
     columns = np.zeros(0, dtype=np.int64) if columns is None else columns
     s = np.zeros((n, 0)) if s is None else s
@@ -254,7 +275,7 @@ def _integrate(
     first_modes = watch.m.copy()
     refuse_start(model, x, u[0], p, watch)
     record = new_record(times, n, s.shape[1], len(times) if ledger else 0, event_room)
-    sampled, stands_still = len(model.sampler_periods) > 0, held or not any(module.INPUT_ACTS)
+    sampled = len(model.sampler_periods) > 0
     whole = method == IMPLICIT and stands_still and not ledger and not sampled
     whole = whole and (rough_tangents or not s.shape[1]) and not np.any(tangents.delay_column >= 0)
     status = hybrid.runner(sampled)(
@@ -272,7 +293,7 @@ def _integrate(
         u,
         x,
         stops,
-        np.array([accuracy.relative, accuracy.largest_step, accuracy.most_steps]),
+        limits,
         accuracy.absolute,
         tuple(new_step(n, nu, len(p), solved)),
         tuple(watch),

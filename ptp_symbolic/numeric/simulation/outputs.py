@@ -3,12 +3,12 @@
 import numpy as np
 
 from ptp_symbolic.numeric.runtime.element_layout import contact_count, contact_modes
-from ptp_symbolic.numeric.simulation.events.location import TIME_RESOLUTION
 from ptp_symbolic.numeric.simulation.events.pressed import PRESSED
 from ptp_symbolic.numeric.simulation.kernels.calls import call
 from ptp_symbolic.numeric.simulation.kernels.records import (
     EVENTS,
     OUTPUT,
+    TIME_RESOLUTION,
     UNBALANCED,
     copy,
     copy_matrix,
