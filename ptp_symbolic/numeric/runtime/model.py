@@ -275,7 +275,8 @@ class Model:
         Raises InputError for a name that the model does not have and for a value that is not finite
         or outside the bounds of its parameter.
         """
-        values = values or {}
+        if not values:
+            return self._default_vector.copy()
         for name in values:
             if name not in self.defaults:
                 raise unknown("parameter", name, self.parameter_names)
@@ -283,6 +284,10 @@ class Model:
             if p.name in values:
                 _refuse_out_of_bounds(p, values[p.name])
         return np.array([values.get(n, d) for n, d in self.defaults.items()], dtype=np.float64)
+
+    @cached_property
+    def _default_vector(self) -> FloatArray:
+        return np.array(list(self.defaults.values()), dtype=np.float64)
 
     def prepared(self, p: FloatArray) -> FloatArray:
         """Return the subexpressions of p [np] alone that `prepared_derivative` takes."""

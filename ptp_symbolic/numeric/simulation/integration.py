@@ -1,6 +1,8 @@
 """Integrate a model with adaptive steps: preallocate, run, and return the solution."""
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
+from types import ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -88,8 +90,13 @@ def default_method(model: Model) -> str:
     A winding or a shaft is a hundred times faster than the motion: the machine is stiff, and
     stability limits the steps of an explicit method.
     """
-    bodies = {f"{kind}_{axis}" for kind in ("theta", "omega") for axis in model.module.AXES}
-    smooth = not model.mode_names and set(model.state_names) <= bodies
+    return _default_method(model.module)
+
+
+@lru_cache(maxsize=256)
+def _default_method(module: ModuleType) -> str:
+    bodies = {f"{kind}_{axis}" for kind in ("theta", "omega") for axis in module.AXES}
+    smooth = not module.MODE_NAMES and set(module.STATE_NAMES) <= bodies
     return EXPLICIT if smooth else IMPLICIT
 
 
