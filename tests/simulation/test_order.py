@@ -3,8 +3,9 @@
 Steps of one length, errors against exact solutions, the order as the slope of a line through four
 errors. The motions are nonlinear: Rodas5P is of order 6 for linear ones. The steps are as short as
 the leading term of the error needs to rule: at a tenth of a swing that of Tsitouras's pair, whose
-coefficients are tiny, does not yet. Slow motions keep the error well above what an event costs,
-which is found to 2e-12 s whatever the step.
+coefficients are tiny, does not yet; nor does that of the pair of order 8, beside the next, until
+rounding does. Slow motions keep the error well above what an event costs, which is found to 2e-12 s
+whatever the step.
 """
 
 import math
@@ -48,15 +49,15 @@ def run(model: Model, times: Any, method: str, length: float, **rest: Any) -> Tr
 
 
 @pytest.mark.parametrize(
-    ("method", "expected", "longest", "end"),
+    ("method", "expected", "within", "longest", "end"),
     [
-        ("rosenbrock", 5.0, 5e-3, 10.0),
-        ("runge_kutta", 5.0, 5e-3, 10.0),
-        ("fixed_step", 2.0, 1e-4, 2.0),
+        ("rosenbrock", 5.0, 0.1, 5e-3, 10.0),
+        ("runge_kutta", 8.5, 0.5, 0.1, 10.0),
+        ("fixed_step", 2.0, 0.1, 1e-4, 2.0),
     ],
 )
 def test_a_pendulum_of_large_swing(
-    method: str, expected: float, longest: float, end: float, figure
+    method: str, expected: float, within: float, longest: float, end: float, figure
 ) -> None:
     """The payload, let go 160 degrees off its rest: an elliptic function."""
     model, swing = ptp_symbolic.load("payload"), 2.8
@@ -72,7 +73,7 @@ def test_a_pendulum_of_large_swing(
         return float(np.linalg.norm(found["theta_tilt"] - exact))
 
     found = figure(f"order, {expected:g} expected", order(error, sizes(longest)))
-    assert found == pytest.approx(expected, abs=0.1)
+    assert found == pytest.approx(expected, abs=within)
 
 
 def rest_after_swings(start: float, friction: float, pull: float) -> tuple[float, int]:

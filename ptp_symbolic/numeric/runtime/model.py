@@ -244,6 +244,8 @@ class Model:
 
         With the names of those that were `given`, the message calls the others default.
         """
+        if not self.module.REQUIREMENTS:
+            return
         margin = np.zeros(len(self.module.REQUIREMENTS))
         self.module.margins(p, margin)
         values = dict(zip(self.parameter_names, p, strict=True))
@@ -286,7 +288,8 @@ class Model:
         Raises InputError for a name that the model does not have and for a value that is not finite
         or outside the bounds of its parameter.
         """
-        values = values or {}
+        if not values:
+            return self._default_vector.copy()
         for name in values:
             if name not in self.defaults:
                 raise unknown("parameter", name, self.parameter_names)
@@ -304,6 +307,10 @@ class Model:
         found = Derivatives(*map(np.zeros, shapes))
         self.module.linearize(t, x, u, p, m, *found)
         return found
+
+    @cached_property
+    def _default_vector(self) -> FloatArray:
+        return np.array(list(self.defaults.values()), dtype=np.float64)
 
     def prepared(self, p: FloatArray) -> FloatArray:
         """Return the subexpressions of p [np] alone that `prepared_derivative` takes."""

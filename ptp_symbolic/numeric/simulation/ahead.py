@@ -16,12 +16,15 @@ import numba
 from ptp_symbolic.numeric.simulation.kernels.records import source_stamp
 
 RUNNER, SAMPLED_RUNNER, HELD_SAMPLES = "runner", "sampled-runner", "held-samples"
-FIXED_RUNNER = "fixed-runner"
+LEAN_RUNNER = "lean-runner"
+FIXED_RUNNER, SMOOTH_RUNNER = "fixed-runner", "smooth-runner"
 PACKAGE = "ptp_symbolic.numeric.simulation"
 COMPILE = {
     RUNNER: f"from {PACKAGE}.hybrid import runner; runner(False)",
+    LEAN_RUNNER: f"from {PACKAGE}.hybrid import runner; runner(False, True)",
     SAMPLED_RUNNER: f"from {PACKAGE}.hybrid import runner; runner(True)",
     HELD_SAMPLES: f"from {PACKAGE}.held_samples import loop; loop()",
+    SMOOTH_RUNNER: f"from {PACKAGE}.smooth_runner import runner; runner()",
     FIXED_RUNNER: f"from {PACKAGE}.fixed_runner import runner; runner()",
 }
 MARKS = Path(numba.config.CACHE_DIR or Path(__file__).parent / "__pycache__")

@@ -48,7 +48,6 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     WATCH_TYPE,
     Inputs,
     Record,
-    Tangents,
     Watch,
     copy,
     equations_at,
@@ -236,7 +235,7 @@ def compiled_runner(sources: int) -> Callable[..., int]:
         record.counts[SOURCES] = sources
         equations = equations_at(functions, p, prepared, friction_rates, zero_at_rest, contacts)
         inputs, work = Inputs(table, cursor, held, u[0], u[1]), StepWork(*work)
-        watch, tangents, sampling = Watch(*watch), Tangents(*tangents), Sampling(*sampling)
+        watch, tangents, sampling = Watch(*watch), None, Sampling(*sampling)
         m, times = watch.m, record.times
         record.clock[TIME] = times[0]
         if is_outside(x, watch):

@@ -19,13 +19,13 @@ import numpy as np
 from numba import njit, types
 
 from ptp_symbolic.numeric.simulation.ahead import (
+    LEAN_RUNNER,
     RUNNER,
     SAMPLED_RUNNER,
     made_once,
 )
 from ptp_symbolic.numeric.simulation.events.crossing import enter, jump_by_delay, pass_event
 from ptp_symbolic.numeric.simulation.events.location import (
-    TIME_RESOLUTION,
     first_violation,
     is_finite,
     is_outside,
@@ -43,9 +43,11 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     LENGTH,
     OUTSIDE,
     RUN_TYPES,
+    SHORTEST,
     SOURCES,
     STEPS,
     TIME,
+    TIME_RESOLUTION,
     TOO_FAST,
     Inputs,
     Record,
@@ -63,10 +65,10 @@ from ptp_symbolic.numeric.simulation.methods.exponential_step import reach_sampl
 from ptp_symbolic.numeric.simulation.methods.propagator import PROPAGATOR, Propagator
 from ptp_symbolic.numeric.simulation.methods.steps import (
     ROSENBROCK,
-    RUNGE_KUTTA,
     attempt,
     begin,
     end_slope,
+    ends_with_slope,
     error_norm,
     fill_dense,
     push_tangents,
@@ -148,15 +150,10 @@ def leave(method, equations, inputs, t, length, t_new, x, step, watch, tangents,
     if len(record.ledger) > 0:
         for c in range(1, 3):
             record.totals[c] += work_done(1.0, length, record.powers, c)
-    if tangents.table.shape[1] > 0:
-        push_tangents(method, equations, inputs, t, length, watch.m, step, tangents)
-        flush(tangents.s)
+    push_tangents(method, equations, inputs, t, length, watch.m, step, tangents)
     copy(step.end, x)
     flush(x)
     record.clock[TIME] = t_new
-
-
-SHORTEST = 1e-11  # s
 
 
 @merged
@@ -194,7 +191,7 @@ def advance(method, equations, inputs, stop, x, limits, atol, step, watch, tange
         if not is_finite(step.end, LARGEST_STATE):
             return DIVERGED
         leave(method, equations, inputs, t, length, t_new, x, step, watch, tangents, record)
-        known = method == RUNGE_KUTTA
+        known = ends_with_slope(method)
         if known:
             end_slope(method, equations, inputs, t_new, watch.m, step, step.slope)
         if fraction > 0.0:
@@ -251,10 +248,24 @@ def advance_by_samples(
             return CHATTERING
 
 
-def compiled_runner(sources: int, sampled: bool) -> Callable[..., int]:
+@inlined
+def as_it_is(value):
+    """The value."""
+    return value
+
+
+@inlined
+def left_out(value):
+    """None: what it is for is not compiled."""
+    return None
+
+
+def compiled_runner(sources: int, sampled: bool, lean: bool) -> Callable[..., int]:
     """The compiled runner for machines with samplers (`sampled`), or for those without, which takes
-    a third less time; stamped with the `sources` it comes from (see `source_stamp`).
+    a third less time; or for runs of those by the implicit method without tangents (`lean`), which
+    takes ***; stamped with the `sources` it comes from (see `source_stamp`).
     """
+    chosen = left_out if lean else as_it_is
 
     @njit(
         types.int64(
@@ -297,7 +308,8 @@ def compiled_runner(sources: int, sampled: bool) -> Callable[..., int]:
         record.counts[SOURCES] = sources
         equations = equations_at(functions, p, prepared, friction_rates, zero_at_rest, contacts)
         inputs, step, watch = Inputs(table, cursor, held, u[0], u[1]), Step(*step), Watch(*watch)
-        tangents, sampling = Tangents(*tangents), Sampling(*sampling)
+        method, tangents = chosen(method), chosen(Tangents(*tangents))
+        sampling = Sampling(*sampling)
         propagator = Propagator(*propagator)
         record.clock[TIME], record.clock[LENGTH] = stops[0], limits[1]
         if sampled and is_due(stops[0], sampling):
@@ -332,7 +344,7 @@ def compiled_runner(sources: int, sampled: bool) -> Callable[..., int]:
             index += 1
             copy(inputs.u, u[2])
             evaluate_inputs(stops[index - 1], 1, *inputs.table, inputs.cursor, inputs.u)
-            if tangents.table.shape[1] > 0 and index > 1:
+            if index > 1:
                 jump_by_delay(equations, inputs, stops[index - 1], x, u[2], watch, tangents)
             if not enter(equations, inputs, stops[index - 1], x, watch, tangents, record):
                 return CHATTERING
@@ -365,10 +377,10 @@ def compiled_runner(sources: int, sampled: bool) -> Callable[..., int]:
     return run
 
 
-@lru_cache(maxsize=2)
-def runner(sampled: bool) -> Callable[..., int]:
-    """The runner for machines with samplers (`sampled`) or without, compiled when it is first
-    needed: half a minute once on a new machine, or begun before by `compile_ahead`.
+@lru_cache(maxsize=3)
+def runner(sampled: bool, lean: bool = False) -> Callable[..., int]:
+    """The runner as `compiled_runner` makes it, when it is first needed: up to half a minute once
+    on a new machine, or begun before by `compile_ahead`.
     """
-    kernel = SAMPLED_RUNNER if sampled else RUNNER
-    return made_once(kernel, lambda: compiled_runner(source_stamp(), sampled))
+    kernel = SAMPLED_RUNNER if sampled else LEAN_RUNNER if lean else RUNNER
+    return made_once(kernel, lambda: compiled_runner(source_stamp(), sampled, lean))

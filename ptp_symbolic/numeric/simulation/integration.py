@@ -1,6 +1,8 @@
 """Integrate a model with adaptive steps: preallocate, run, and return the solution."""
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
+from types import ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +35,7 @@ from ptp_symbolic.numeric.simulation.methods.propagator import new_propagator
 from ptp_symbolic.numeric.simulation.methods.steps import ROSENBROCK, RUNGE_KUTTA
 from ptp_symbolic.numeric.simulation.sampling import new_sampling
 from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
+from ptp_symbolic.numeric.simulation.smooth_integration import integrate_smooth, is_smooth
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -87,8 +90,13 @@ def default_method(model: Model) -> str:
     A winding or a shaft is a hundred times faster than the motion: the machine is stiff, and
     stability limits the steps of an explicit method.
     """
-    bodies = {f"{kind}_{axis}" for kind in ("theta", "omega") for axis in model.module.AXES}
-    smooth = not model.mode_names and set(model.state_names) <= bodies
+    return _default_method(model.module)
+
+
+@lru_cache(maxsize=256)
+def _default_method(module: ModuleType) -> str:
+    bodies = {f"{kind}_{axis}" for kind in ("theta", "omega") for axis in module.AXES}
+    smooth = not module.MODE_NAMES and set(module.STATE_NAMES) <= bodies
     return EXPLICIT if smooth else IMPLICIT
 
 
@@ -227,6 +235,26 @@ def _integrate(
     rough_tangents: bool,
 ) -> Solution:
     """One run, as `integrate` has it."""
+    stands_still = held or not any(model.module.INPUT_ACTS)
+    limits = np.array([accuracy.relative, accuracy.largest_step, accuracy.most_steps])
+    if method == EXPLICIT and (s is None or not s.shape[1]) and is_smooth(model):
+        status, reached, state, states, energies, steps = integrate_smooth(
+            model, p, x, inputs, stands_still, stops, times, limits, accuracy.absolute, ledger
+        )
+        none, tangents_of_none = np.zeros((0, 3)), np.zeros((len(times), len(x), 0))
+        return Solution(
+            status,
+            reached,
+            state,
+            states,
+            tangents_of_none,
+            energies,
+            none,
+            0,
+            steps,
+            np.zeros(0),
+            np.zeros(0),
+        )
     n, nu, module = len(x), len(model.input_names), model.module
     columns = np.zeros(0, dtype=np.int64) if columns is None else columns
     s = np.zeros((n, 0)) if s is None else s
@@ -252,10 +280,11 @@ def _integrate(
     first_modes = watch.m.copy()
     refuse_start(model, x, u[0], p, watch)
     record = new_record(times, n, s.shape[1], len(times) if ledger else 0, event_room)
-    sampled, stands_still = len(model.sampler_periods) > 0, held or not any(module.INPUT_ACTS)
+    sampled = len(model.sampler_periods) > 0
     whole = method == IMPLICIT and stands_still and not ledger and not sampled
     whole = whole and (rough_tangents or not s.shape[1]) and not np.any(tangents.delay_column >= 0)
-    status = hybrid.runner(sampled)(
+    lean_kernel = method == IMPLICIT and not s.shape[1] and not sampled
+    status = hybrid.runner(sampled, lean_kernel)(
         METHODS[method],
         loop_address() if whole else 0,
         functions,
@@ -270,7 +299,7 @@ def _integrate(
         u,
         x,
         stops,
-        np.array([accuracy.relative, accuracy.largest_step, accuracy.most_steps]),
+        limits,
         accuracy.absolute,
         tuple(new_step(n, nu, len(p) if s.shape[1] else 0, solved)),
         tuple(watch),

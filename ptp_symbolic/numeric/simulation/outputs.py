@@ -3,12 +3,12 @@
 import numpy as np
 
 from ptp_symbolic.numeric.runtime.element_layout import contact_count, contact_modes
-from ptp_symbolic.numeric.simulation.events.location import TIME_RESOLUTION
 from ptp_symbolic.numeric.simulation.events.pressed import PRESSED
 from ptp_symbolic.numeric.simulation.kernels.calls import call
 from ptp_symbolic.numeric.simulation.kernels.records import (
     EVENTS,
     OUTPUT,
+    TIME_RESOLUTION,
     UNBALANCED,
     copy,
     copy_matrix,
@@ -140,7 +140,8 @@ def _write_here(equations, inputs, t, x, m, tangents, record):
     output = record.counts[OUTPUT]
     while output < len(record.times) and record.times[output] <= t + TIME_RESOLUTION:
         copy(x, record.x[output])
-        copy_matrix(tangents.table, record.s[output])
+        if tangents is not None:
+            copy_matrix(tangents.table, record.s[output])
         if len(record.ledger) > 0:
             _write_ledger(equations, inputs, t, m, output, record)
         output += 1

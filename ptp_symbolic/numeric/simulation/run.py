@@ -7,6 +7,7 @@ Output times of a simulation.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -69,9 +70,14 @@ def output_times(times: float | ArrayLike, every: float = OUTPUT_STEP) -> FloatA
         t = _regular_times(float(t), every)
     elif isinstance(times, tuple) and t.shape == (2,) and 0.0 < t[1] - t[0] < np.inf:
         t = float(t[0]) + _regular_times(float(t[1] - t[0]), every)
-    if t.ndim != 1 or len(t) < 2 or not np.all(np.isfinite(t)) or np.any(np.diff(t) <= 0):
+    if t.ndim != 1 or len(t) < 2 or not _increases(t):
         raise InputError("Output times must be two or more finite, increasing numbers of seconds.")
     return t
+
+
+def _increases(t: FloatArray) -> bool:
+    """Whether the numbers t [k] are finite and increase."""
+    return bool((t[1:] > t[:-1]).all()) and math.isfinite(t[0]) and math.isfinite(t[-1])
 
 
 def _regular_times(duration: float, every: float) -> FloatArray:
@@ -121,6 +127,8 @@ class Event:
 
 def named_events(model: Model, rows: FloatArray) -> tuple[Event, ...]:
     """The events of `rows` [e, 3]: time in s, element, mode entered."""
+    if not len(rows):
+        return ()
     frictions = [n.removeprefix("slide_") for n in model.mode_names if n.startswith("slide_")]
     contacts = [n.removeprefix("side_") for n in model.mode_names if n.startswith("side_")]
     events = []
@@ -244,8 +252,9 @@ def simulate(
             event_room=event_room,
         )
 
-    found = run(EVENT_ROOM)
-    if found.event_count > EVENT_ROOM and feedback is None:
+    room = EVENT_ROOM if model.mode_names else 0
+    found = run(room)
+    if found.event_count > room and feedback is None:
         found = run(found.event_count)
     refuse_failure(model, p, found.status, found.reached, found.state)
     if isinstance(found, FixedSolution):

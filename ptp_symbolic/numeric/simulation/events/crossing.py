@@ -34,25 +34,15 @@ def cross(equations, inputs, t, x, watch, tangents, record):
 
     Returns False when the modes chatter.
     """
-    m, frictions, ns = watch.m, len(equations.friction_rates), tangents.table.shape[1]
+    m, frictions = watch.m, len(equations.friction_rates)
     evaluate_inputs(t, 1, *inputs.table, inputs.cursor, inputs.u)
     copy(m, watch.m_before)
-    if ns > 0:
-        by_time = differentiate_guard(equations, inputs, t, x, watch, tangents)
-        follow_to_event(by_time, watch, tangents)
+    follow_to_event(equations, inputs, t, x, watch, tangents)
     if not settle(equations, t, x, inputs.u, watch, tangents):
         return False
     note_switches(t, m, watch.m_before, frictions, equations.contacts, record)
     note_strikes(watch, record)
-    if ns == 0:
-        return True
-    derivative(equations, t, x, inputs.u, m, watch.after)
-    for a in range(len(x)):
-        friction = equations.zero_at_rest[a]
-        if friction >= 0 and m[friction] == 0.0 and watch.m_before[friction] != 0.0:
-            clear(tangents.table[a])
-    follow_from_event(watch, tangents)
-    clear_resting(equations, m, tangents.table)
+    follow_from_event(equations, inputs, t, x, watch, tangents)
     return True
 
 
@@ -97,12 +87,19 @@ def differentiate_guard(equations, inputs, t, x, watch, tangents):
 
 
 @inlined
-def follow_to_event(by_time, watch, tangents):
-    """Add f- dt/dp to the tangents [n, ns], dt/dp from the event function; keeps dt/dp.
+def follow_to_event(equations, inputs, t, x, watch, tangents):
+    """Add f- dt/dp to the tangents [n, ns], if any, dt/dp from the event function; keeps dt/dp.
 
     First half of the saltation matrix. Impacts act between this and `follow_from_event`, at the
     state where the event is. A grazing event has no dt/dp.
     """
+    if tangents is not None and tangents.table.shape[1] > 0:
+        by_time = differentiate_guard(equations, inputs, t, x, watch, tangents)
+        _follow_to_event(by_time, watch, tangents)
+
+
+@inlined
+def _follow_to_event(by_time, watch, tangents):
     s, columns, shifts = tangents.table, tangents.columns, tangents.along
     n, ns = s.shape
     for c in range(ns):
@@ -124,8 +121,22 @@ def follow_to_event(by_time, watch, tangents):
 
 
 @inlined
-def follow_from_event(watch, tangents):
-    """Take f+ dt/dp off the tangents [n, ns]: the second half of the saltation matrix."""
+def follow_from_event(equations, inputs, t, x, watch, tangents):
+    """Take f+ dt/dp off the tangents [n, ns], if any: the second half of the saltation matrix; and
+    zero those of what has come to rest.
+    """
+    if tangents is not None and tangents.table.shape[1] > 0:
+        derivative(equations, t, x, inputs.u, watch.m, watch.after)
+        for a in range(len(x)):
+            friction = equations.zero_at_rest[a]
+            if friction >= 0 and watch.m[friction] == 0.0 and watch.m_before[friction] != 0.0:
+                clear(tangents.table[a])
+        _follow_from_event(watch, tangents)
+        clear_resting(equations, watch.m, tangents.table)
+
+
+@inlined
+def _follow_from_event(watch, tangents):
     s = tangents.table
     for c in range(s.shape[1]):
         for a in range(s.shape[0]):
@@ -134,9 +145,15 @@ def follow_from_event(watch, tangents):
 
 @kernel
 def jump_by_delay(equations, inputs, t, x, u_before, watch, tangents):
-    """Add (f- - f+) to the tangent of every delay whose zero-order-hold input jumps at t, from
-    u_before [nu] to inputs.u.
+    """Add (f- - f+) to the tangent, if any, of every delay whose zero-order-hold input jumps at t,
+    from u_before [nu] to inputs.u.
     """
+    if tangents is not None and tangents.table.shape[1] > 0:
+        _jump_by_delay(equations, inputs, t, x, u_before, watch, tangents)
+
+
+@inlined
+def _jump_by_delay(equations, inputs, t, x, u_before, watch, tangents):
     u, s = inputs.u, tangents.table
     for j in range(len(u)):
         column = tangents.delay_column[j]

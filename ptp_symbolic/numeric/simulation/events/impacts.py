@@ -55,7 +55,7 @@ def strike(contact, equations, t, x, u, watch, tangents):
     bounces = equations.contacts[contact, SETTLING] == 0
     bounces = bounces and changes[at + n] * speed > RESTING_SPEED
     restitution = changes[at + n] if bounces else 0.0
-    if tangents.table.shape[1] > 0:
+    if tangents is not None and tangents.table.shape[1] > 0:
         call(equations.impact_jacobian, t, x, u, equations.p, m, watch.strike_x, watch.strike_p)
         strike_tangents(at, restitution, watch, tangents)
     watch.lost[0] += (1.0 - restitution * restitution) * changes[at + n + 1]

@@ -5,7 +5,13 @@ Where the equations of a model end: bounds of states, watched like the ends of m
 
 from ptp_symbolic.numeric.simulation.events.modes import largest_violation, violation
 from ptp_symbolic.numeric.simulation.events.pressed import fill_guards
-from ptp_symbolic.numeric.simulation.kernels.records import TIME, inlined, kernel, merged
+from ptp_symbolic.numeric.simulation.kernels.records import (
+    TIME,
+    TIME_RESOLUTION,
+    inlined,
+    kernel,
+    merged,
+)
 from ptp_symbolic.numeric.simulation.methods.steps import attempt, curve, fill_dense
 from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
 
@@ -49,7 +55,6 @@ def stop_at_bound(t, h, x, end, watch, clock):
 
 
 MISSES, NEAR_START = 4, 0.01
-TIME_RESOLUTION = 1e-12  # s
 LANDING = 2e-12  # s; how far past an event a step may end
 NEARLY = 0.25
 NEARBY = 1e-3  # of the way to the root: step of the first slope, on the dense output

@@ -60,6 +60,15 @@ def addresses(module: ModuleType, tangents: bool = True) -> NDArray[np.int64]:
 
 
 @lru_cache(maxsize=256)
+def smooth_addresses(module: ModuleType, ledger: bool) -> NDArray[np.int64]:
+    """Addresses [2] of `prepared_derivative` and `energy` of an emitted module, the latter 0, and
+    not compiled, without a `ledger`.
+    """
+    wanted = {name: SIGNATURES[name] for name in ("prepared_derivative", "energy")}
+    return compiled_addresses(module, wanted, () if ledger else ("energy",))
+
+
+@lru_cache(maxsize=256)
 def sampler_addresses(module: ModuleType) -> NDArray[np.int64]:
     """Addresses [2] of `sample` and `sample_jacobian` of a module with samplers."""
     return compiled_addresses(module, SAMPLER_SIGNATURES)

@@ -19,7 +19,7 @@ kernel = njit(**INNER)
 inlined = njit(forceinline=True, **INNER)
 merged = njit(inline="always", **INNER)  # for large ones: not compiled by itself as well
 
-RUNNERS = ("hybrid.py", "fixed_runner.py")
+RUNNERS = ("hybrid.py", "fixed_runner.py", "smooth_runner.py")
 # What these import of the simulation and of the layout of modes; other modules hold no kernels.
 IMPORT = re.compile(
     r"^from ptp_symbolic\.(numeric\.(?:simulation|runtime\.element_layout)[\w.]*)"
@@ -29,6 +29,8 @@ IMPORT = re.compile(
 SMALLEST = 1e-60
 DONE, DIVERGED, CHATTERING, UNDECIDED, OUTSIDE, EXHAUSTED, TOO_FAST, STIFF = 0, 1, 2, 3, 4, 5, 6, 7
 LARGEST_STATE = 1e12
+TIME_RESOLUTION = 1e-12  # s
+SHORTEST = 1e-11  # s
 TIME, LENGTH = 0, 1
 OUTPUT, EVENTS, STEPS, INSTANT, SOURCES, UNBALANCED = 0, 1, 2, 3, 4, 5
 

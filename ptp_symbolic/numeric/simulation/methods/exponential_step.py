@@ -29,7 +29,6 @@ import math
 
 from ptp_symbolic.numeric.simulation.events.location import (
     NEARLY,
-    TIME_RESOLUTION,
     fill_violations,
     is_finite,
     summit,
@@ -50,6 +49,7 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     LARGEST_STATE,
     STEPS,
     TIME,
+    TIME_RESOLUTION,
     copy,
     flush,
     inlined,

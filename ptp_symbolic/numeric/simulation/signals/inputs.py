@@ -12,7 +12,7 @@ Input profiles as a person types them on the command line: `step:24@0.5`, `const
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -27,6 +27,9 @@ from ptp_symbolic.numeric.simulation.signals.input_values import (
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+
+
+KEPT, KEPT_TABLES = 256, 8  # signals of profiles, and tables of the same signals, met last
 
 
 def _no_rows(columns: int) -> FloatArray:
@@ -101,6 +104,7 @@ def _signal(rows: Sequence[Sequence[float]]) -> InputSignal:
     return InputSignal(np.array([*times, times[-1] + 1.0]), np.array(coefficients))
 
 
+@lru_cache(maxsize=KEPT)
 def constant(value: float) -> InputSignal:
     """The same value for ever."""
     return _signal([(0.0, value)])
@@ -290,15 +294,16 @@ class InputTable:
             self.sweep_offsets,
         )
 
-    @property
+    @cached_property
     def held(self) -> bool:
         """True when every signal is a zero-order hold, constant between stops."""
-        moving = len(self.sines) or len(self.sweeps) or np.any(self.coefficients[:, 1:])
-        return not moving
+        return not (len(self.sines) or len(self.sweeps) or self.coefficients[:, 1:].any())
 
     def with_stops(self, times: FloatArray) -> FloatArray:
         """`times` [k] in s together with the stops between the first and the last, sorted."""
         inner = (self.stops > times[0]) & (self.stops < times[-1])
+        if not inner.any():
+            return times.copy()
         return np.union1d(times, self.stops[inner])
 
     def new_cursor(self) -> IntArray:
@@ -307,7 +312,12 @@ class InputTable:
 
 
 def stack(signals: Sequence[InputSignal]) -> InputTable:
-    """Pack signals, in the order of the model's inputs, into flat arrays."""
+    """Pack signals, in the order of the model's inputs, into flat arrays, which nobody changes."""
+    return _stacked(tuple(signals))
+
+
+@lru_cache(maxsize=KEPT_TABLES)
+def _stacked(signals: tuple[InputSignal, ...]) -> InputTable:
     lists = [(s.coefficients, s.sines, s.sweep) for s in signals]
     coefficients, sines, sweeps = (
         np.concatenate([_no_rows(width), *[parts[i] for parts in lists]])
@@ -362,12 +372,14 @@ def slopes_at(table: InputTable, times: FloatArray) -> FloatArray:
 def delays_of(model: Model, p: FloatArray) -> FloatArray:
     """Delay of every input [nu] in s for parameters p [np]."""
     index = model.input_delays
-    return np.where(index >= 0, p[np.maximum(index, 0)], 0.0) if len(p) else np.zeros(len(index))
+    if not (index >= 0).any():
+        return np.zeros(len(index))
+    return np.where(index >= 0, p[np.maximum(index, 0)], 0.0)
 
 
 def delayed(table: InputTable, delays: FloatArray) -> InputTable:
     """`table` with every signal delayed by its entry of `delays` [nu] in s."""
-    if not np.any(delays):
+    if not delays.any():
         return table
     breaks, sines, sweeps = table.breaks.copy(), table.sines.copy(), table.sweeps.copy()
     for j, delay in enumerate(delays):
@@ -434,6 +446,7 @@ def profile_forms() -> tuple[tuple[str, str], ...]:
     return tuple((f"{kind}:{example}", rule) for kind, (_, example, rule) in _FORMS.items())
 
 
+@lru_cache(maxsize=KEPT)
 def parse_profile(text: str, duration: float) -> InputSignal:
     """Read one profile; times in s, values in the unit of the input that it drives.
 
