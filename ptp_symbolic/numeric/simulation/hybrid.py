@@ -250,14 +250,10 @@ def advance_by_samples(
 
 
 @inlined
-def as_it_is(value):
-    """The value."""
-    return value
-
-
-@inlined
-def left_out(value):
-    """None: what it is for is not compiled."""
+def unless(left_out, value):
+    """`value` where `left_out` is None, else None: what it is for is then not compiled."""
+    if left_out is None:
+        return value
     return None
 
 
@@ -266,7 +262,7 @@ def compiled_runner(sources: int, sampled: bool, lean: bool) -> Callable[..., in
     a third less time; or for runs of those by the implicit method without tangents (`lean`), which
     takes two thirds of that; stamped with the `sources` it comes from (see `source_stamp`).
     """
-    chosen = left_out if lean else as_it_is
+    left_out = 1 if lean else None  # no function: it would be another in every process
 
     @njit(
         types.int64(
@@ -312,7 +308,7 @@ def compiled_runner(sources: int, sampled: bool, lean: bool) -> Callable[..., in
         inputs = place(Inputs(table, cursor, held, u[0], u[1]))
         step, watch = place(Step(*step)), place(Watch(*watch))
         moved = place(Tangents(*tangents))
-        method, tangents = chosen(method), chosen(moved)
+        method, tangents = unless(left_out, method), unless(left_out, moved)
         sampling, propagator = place(Sampling(*sampling)), place(Propagator(*propagator))
         record.clock[TIME], record.clock[LENGTH] = stops[0], limits[1]
         if sampled and is_due(stops[0], sampling):
