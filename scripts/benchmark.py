@@ -12,6 +12,9 @@ the best of several. How to read the table:
   the same run for the final state alone, "ledger" that with outputs and an energy ledger. Ours and
   every peer run at the loosest tolerance of a list that stays below 1e-8 (the error of a peer is
   that at its own steps); a peer keeps no outputs, and its ratio is to "final".
+- "first run": 10 s in a new process, its processor time with an empty cache of compiled code (ms)
+  and with that full (final).
+- "short run": 1 ms of the payload by the public `simulate`, which is all setting up.
 - "log of 50,000 rows": a CSV file read and checked, beside numpy's loadtxt, which only reads it.
 - "batch": trajectories per second on one core, and how many times as many as each peer.
 - "sensitivities": time with six parameters over time without, and their largest relative error.
@@ -23,9 +26,13 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
+import subprocess
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -96,6 +103,42 @@ def one_trajectory() -> list[Row]:
             "ratio": other / mine,
         }
     ]
+
+
+FIRST = """
+import ptp_symbolic, time
+ptp_symbolic.simulate({!r}, 10.0, {})
+print(time.process_time())
+"""
+FIRST_RUNS = {"payload": {"tau_pan": "multisine:0.1@1"}, "pan_drive": {"u_pan": "step:24@0.5"}}
+
+
+def first_runs() -> list[Row]:
+    """The first run of a smooth machine and of one with events, interpreter and compiler too."""
+    rows: list[Row] = []
+    for name, given in FIRST_RUNS.items():
+        with TemporaryDirectory() as empty:
+            command = [sys.executable, "-c", FIRST.format(name, given)]
+            cold, warm = (
+                float(
+                    subprocess.run(
+                        command,
+                        env={**os.environ, "NUMBA_CACHE_DIR": empty},
+                        capture_output=True,
+                        check=True,
+                    ).stdout
+                )
+                for _ in range(2)
+            )
+        rows.append({"what": f"first run, {name}", "ms": cold * 1e3, "final": warm * 1e3})
+    return rows
+
+
+def short_run() -> list[Row]:
+    """What the public function takes beside the integration."""
+    model = ptp_symbolic.load("payload")
+    taken, _ = best(lambda: ptp_symbolic.simulate(model, 1e-3, tau_pan=0.1), 1000)
+    return [{"what": "short run, payload, 1 ms", "ms": taken * 1e3}]
 
 
 def off(x: Any, exact: Any) -> float:
@@ -262,6 +305,8 @@ def main() -> None:
     rows = [
         *right_hand_side(),
         *one_trajectory(),
+        *short_run(),
+        *first_runs(),
         *drive_cases(arguments.all),
         *sampled_controller(),
         *sensitivities(),

@@ -25,6 +25,7 @@ from ptp_symbolic.numeric.simulation.events.impacts import SETTLING, SPRUNG
 from ptp_symbolic.numeric.simulation.events.location import is_finite, is_outside, stop_at_bound
 from ptp_symbolic.numeric.simulation.events.modes import largest_violation, settle
 from ptp_symbolic.numeric.simulation.events.pressed import fill_guards
+from ptp_symbolic.numeric.simulation.kernels.by_address import place
 from ptp_symbolic.numeric.simulation.kernels.calls import call
 from ptp_symbolic.numeric.simulation.kernels.records import (
     DIVERGED,
@@ -231,11 +232,13 @@ def compiled_runner(sources: int) -> Callable[..., int]:
         sampling,
     ):
         """Integrate from the first to the last output time; inputs jump at no other time."""
-        record = Record(*record)
+        record = place(Record(*record))
         record.counts[SOURCES] = sources
-        equations = equations_at(functions, p, prepared, friction_rates, zero_at_rest, contacts)
-        inputs, work = Inputs(table, cursor, held, u[0], u[1]), StepWork(*work)
-        watch, tangents, sampling = Watch(*watch), None, Sampling(*sampling)
+        equations = place(
+            equations_at(functions, p, prepared, friction_rates, zero_at_rest, contacts)
+        )
+        inputs, work = place(Inputs(table, cursor, held, u[0], u[1])), place(StepWork(*work))
+        watch, tangents, sampling = place(Watch(*watch)), None, place(Sampling(*sampling))
         m, times = watch.m, record.times
         record.clock[TIME] = times[0]
         if is_outside(x, watch):

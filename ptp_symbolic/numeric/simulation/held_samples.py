@@ -14,17 +14,24 @@ from numba.extending import intrinsic
 
 from ptp_symbolic.numeric.simulation.ahead import HELD_SAMPLES, made_once
 from ptp_symbolic.numeric.simulation.events.location import fill_violations
+from ptp_symbolic.numeric.simulation.kernels.by_address import placed
 from ptp_symbolic.numeric.simulation.kernels.records import (
-    KERNEL,
-    RUN_TYPES,
+    EQUATIONS_TYPE,
+    INNER,
+    INPUTS_TYPE,
+    RECORD_TYPE,
     SOURCES,
+    STEP_TYPE,
     STEPS,
+    TANGENTS_TYPE,
+    VECTOR,
+    WATCH_TYPE,
+    Equations,
     Inputs,
     Record,
     Step,
     Tangents,
     Watch,
-    equations_at,
     source_stamp,
 )
 from ptp_symbolic.numeric.simulation.methods.exponential_step import reach_sample
@@ -34,27 +41,28 @@ from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
 
 SIGNATURE = types.int64(
     types.int64,  # index of the stop where it begins
-    *RUN_TYPES,
-    PROPAGATOR,
+    placed(Equations, EQUATIONS_TYPE),
+    placed(Inputs, INPUTS_TYPE),
+    VECTOR,  # x, changed in place
+    VECTOR,  # stops
+    VECTOR,  # rtol, largest step, most steps
+    VECTOR,  # atol
+    placed(Step, STEP_TYPE),
+    placed(Watch, WATCH_TYPE),
+    placed(Tangents, TANGENTS_TYPE),
+    placed(Record, RECORD_TYPE),
+    placed(Propagator, PROPAGATOR),
 )
 
 
 def compiled_loop(sources: int) -> Callable[..., int]:
     """The compiled loop, stamped with the `sources` it comes from (see `source_stamp`)."""
 
-    @njit(SIGNATURE, cache=True, **KERNEL)
+    @njit(SIGNATURE, cache=True, **INNER)
     def reach_samples(
         index,
-        functions,
-        p,
-        prepared,
-        friction_rates,
-        zero_at_rest,
-        contacts,
-        table,
-        cursor,
-        held,
-        u,
+        equations,
+        inputs,
         x,
         stops,
         limits,
@@ -66,11 +74,7 @@ def compiled_loop(sources: int) -> Callable[..., int]:
         propagator,
     ):
         """Go on from the stop `index`; returns that of the stop where something else is needed."""
-        equations = equations_at(functions, p, prepared, friction_rates, zero_at_rest, contacts)
-        inputs, step, watch = Inputs(table, cursor, held, u[0], u[1]), Step(*step), Watch(*watch)
-        tangents, record = Tangents(*tangents), Record(*record)
         record.counts[SOURCES] = sources
-        propagator = Propagator(*propagator)
         while index < len(stops) - 1 and record.counts[STEPS] < limits[2]:
             t = stops[index]
             evaluate_inputs(t, 1, *inputs.table, inputs.cursor, inputs.u)

@@ -283,8 +283,9 @@ def _integrate(
     sampled = len(model.sampler_periods) > 0
     whole = method == IMPLICIT and stands_still and not ledger and not sampled
     whole = whole and (rough_tangents or not s.shape[1]) and not np.any(tangents.delay_column >= 0)
-    lean_kernel = method == IMPLICIT and not s.shape[1] and not sampled
-    status = hybrid.runner(sampled, lean_kernel)(
+    # A search, which leaves out zeros too, calls for tangents sooner or later: one runner will do.
+    lean_runner = method == IMPLICIT and not (s.shape[1] or sampled or lean)
+    status = hybrid.runner(sampled, lean_runner)(
         METHODS[method],
         loop_address() if whole else 0,
         functions,
