@@ -307,11 +307,13 @@ def machine_of(model: Model) -> Machine:
     return Machine(model.module, model.declared, model.platform)
 
 
-def load(source: Source) -> Machine:
+def load(source: Source, *, catalogue_values: bool = False) -> Machine:
     """Load a machine: a committed model or a packaged preset by its name, the path of a platform
     TOML, a `Platform`, or a model.
 
-    Raises InputError when there is no such model, or the platform cannot be used.
+    Raises InputError when there is no such model, the platform cannot be used, or leaves out a
+    parameter without a natural default, such as an inertia. With `catalogue_values` a `Platform`
+    has for these the values of the catalogue, which are those of the thesis' machine.
 
     >>> import ptp_symbolic as ptp
     >>> ptp.load("payload").title
@@ -319,9 +321,9 @@ def load(source: Source) -> Machine:
     """
     if isinstance(source, Model):
         return machine_of(source)
-    if not isinstance(source, Platform):
-        if str(source) in model_names():
-            return machine_of(load_model(str(source)))
+    if not isinstance(source, Platform) and str(source) in model_names():
+        return machine_of(load_model(str(source)))
+    if not (isinstance(source, Platform) and catalogue_values):
         source = platform_of(source)
     from ptp_symbolic.models.emission import emit
 
@@ -333,6 +335,9 @@ def platform_of(source: Source) -> Platform:
     and for a model that does not know its platform.
     """
     if isinstance(source, Platform):
+        from ptp_symbolic.symbolic.derivation.placement import refuse_undeclared
+
+        refuse_undeclared(source)
         return source
     if isinstance(source, Model):
         return machine_of(source)._known_platform()

@@ -250,6 +250,7 @@ def _print_parameters(parameters: Mapping[str, Any]) -> None:
 
     for name, p in parameters.items():
         low, high = (f"{v:.5g}" if v is not None else "?" for v in p["ci95"])
+        interval = "no interval" if (low, high) == ("?", "?") else f"[{low}, {high}]"
         notes = doubts(p)
         more = f"  ({', '.join(notes)})" if notes else ""
-        click.echo(f"  {name} = {p['value']:.6g} {p['unit']}  [{low}, {high}]{more}")
+        click.echo(f"  {name} = {p['value']:.6g} {p['unit']}  {interval}{more}")

@@ -16,8 +16,9 @@ from ptp_symbolic.symbolic.targets.numba.module import module_text
 def emit(platform: Platform) -> Model:
     """Derive, emit and load the model of `platform`; modules are kept by their mathematics.
 
-    Machines that differ in their numbers alone share a module, which is compiled once. Raises
-    InputError when no machine with its parameters can exist.
+    Machines that differ in their numbers alone share a module, which is compiled once. What nobody
+    declares has the catalogue's value here: `ptp_symbolic.load` refuses that, a set of candidates
+    needs it. Raises InputError when no machine with its parameters can exist.
     """
     equations = possible_equations(platform)
     path = emitted(equations, parameters_of(place_effects(platform)))

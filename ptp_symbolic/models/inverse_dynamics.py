@@ -17,6 +17,7 @@ from ptp_symbolic.platform import ParameterDeclaration, Platform
 from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.derivation.placement import refuse_undeclared
 from ptp_symbolic.symbolic.effect_interface.place import slide
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.symbols import real
@@ -74,7 +75,8 @@ def inverse_dynamics(
     motors and shafts are left out. `motion` is a `Motion`, or angles, rates and accelerations. Dry
     friction acts against the rate, and where that is zero against the acceleration; at rest it is
     left out, as any torque up to breakaway holds. States of effects keep their initial values.
-    Raises InputError for a motion or parameters that do not fit.
+    Raises InputError for a motion or parameters that do not fit, and where a platform leaves out a
+    parameter without a natural default.
     Source: Murray, Li and Sastry, A Mathematical Introduction to Robotic Manipulation, 1994,
     Eq. 4.24.
 
@@ -82,7 +84,10 @@ def inverse_dynamics(
     >>> ptp.inverse_dynamics("ideal", ([[0.0, 0.0]], [[0.0, 2.0]], [[0.0, 0.0]]))
     array([[0. , 0.2]])
     """
-    axes, forward, backward = _compiled(_with_values(_platform(machine), parameters or {}))
+    platform = _with_values(_platform(machine), parameters or {})
+    if isinstance(machine, Platform):
+        refuse_undeclared(torque_driven(platform))
+    axes, forward, backward = _compiled(platform)
     angles, rates, accelerations, times = _motion(motion).arrays(axes)
     directions = np.where(rates != 0.0, np.sign(rates), np.sign(accelerations))
     columns = (*angles.T, *rates.T, *accelerations.T, *directions.T, times)

@@ -16,7 +16,6 @@ from numpy.typing import ArrayLike, NDArray
 from ptp_symbolic.errors import unknown
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.integration import (
-    EXPLICIT,
     IMPLICIT,
     METHODS,
     Solution,
@@ -44,6 +43,8 @@ from ptp_symbolic.numeric.simulation.signals.inputs import (
 FloatArray = NDArray[np.float64]
 
 OF_DELAY = 1e-6  # s: step of the central difference by a delay
+FAR = 1e5  # steps of a stable explicit method: a transient as short costs the states no accuracy
+LONGER = 5.0  # times as long is each step through such a transient than the one before
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +101,10 @@ def sensitivity(
     def run(chosen: str) -> Solution:
         # The error estimate does not see a fast mode that has decayed in the states, and it still
         # grows in the tangents, by ten powers of ten where explicit steps are too long.
-        stable = stable_step(model, p, x) if chosen == EXPLICIT else np.inf
+        stable = stable_step(model, p, x)
+        stops = table.with_stops(t)
+        if chosen == IMPLICIT:
+            stops, stable = _through_transients(stops, table.stops, stable), np.inf
         return integrate(
             model,
             chosen,
@@ -108,7 +112,7 @@ def sensitivity(
             x,
             table,
             table.held,
-            table.with_stops(t),
+            stops,
             t,
             replace(accuracy, largest_step=min(largest_step, stable)),
             s,
@@ -122,6 +126,22 @@ def sensitivity(
     refuse_failure(model, p, found.status, found.reached, found.state)
     y, signals = _measured(model, t, found.x, found.s, p, columns, table)
     return Sensitivities(t, found.x, y, (*wanted, *by_initial), found.s, signals)
+
+
+def _through_transients(stops: FloatArray, jumps: FloatArray, shortest: float) -> FloatArray:
+    """`stops` [k] in s, and more of them behind the start and behind `jumps` of an input, from
+    `shortest` on, where a transient is over within a tiny part of the way to the next stop.
+
+    The error estimate lets a step pass over it, of which the states keep next to nothing; the
+    derivative of the vector field by a parameter changes with it, and the tangents keep that.
+    """
+    begins = np.flatnonzero(np.isin(stops[:-1], jumps) | (np.arange(len(stops) - 1) == 0))
+    more = [stops]
+    for begin, length in zip(stops[begins], np.diff(stops)[begins], strict=True):
+        if length > FAR * shortest:
+            count = int(np.log(length / shortest) / np.log(LONGER))
+            more.append(begin + shortest * LONGER ** np.arange(count))
+    return np.unique(np.concatenate(more))
 
 
 def _measured(

@@ -6,11 +6,14 @@ import pickle
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from multiprocessing import get_context
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import ptp_symbolic as ptp
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.models.committed import declared_platform
 from ptp_symbolic.platform import EffectDeclaration, Platform
 
 PENDULUM = Platform(
@@ -40,9 +43,52 @@ VALUES = {
 }
 
 
+BENCH = """
+[platform]
+name = "bench"
+axes = ["pan"]
+[[effects]]
+effect = "rigid_bodies"
+[[effects]]
+effect = "viscous_friction"
+axis = "pan"
+[parameters.b_pan]
+value = 0.2
+"""
+
+
 @pytest.fixture(scope="module")
 def pendulum() -> ptp.Machine:
-    return ptp.load(PENDULUM)
+    return ptp.load(PENDULUM, catalogue_values=True)
+
+
+def test_a_platform_without_its_inertia_is_refused_in_the_words_of_the_commands(
+    tmp_path: Path,
+) -> None:
+    """As an object as from a file: the thesis' machine is no default of another one."""
+    file = tmp_path / "bench.toml"
+    file.write_text(BENCH, encoding="utf-8")
+    said = (
+        f"{file}: Not declared, and without a natural default: J_pan in kg m^2 (inertia of the"
+        " pan body about z). Declare each under [parameters], as in J_pan = { value = NUMBER,"
+        ' unit = "kg m^2" }, or with start in place of value where it is to be fitted.'
+    )
+    platform = ptp.read_platform(file)
+    motion = ([[0.0]], [[0.0]], [[1.0]])
+    for use in (
+        lambda: declared_platform(str(file)),
+        lambda: ptp.load(platform),
+        lambda: ptp.simulate(platform, 1.0),
+        lambda: ptp.export(platform, "c99", tmp_path / "out"),
+        lambda: ptp.fit(platform, [tmp_path / "run.csv"]),
+        lambda: ptp.inverse_dynamics(platform, motion),
+    ):
+        with pytest.raises(InputError) as error:
+            use()
+        assert str(error.value) == said
+    assert ptp.load(platform, catalogue_values=True).name == "bench"
+    torque = ptp.inverse_dynamics(platform, motion, {"J_pan": 3.0})
+    assert torque == pytest.approx(np.array([[3.0]]))
 
 
 def test_linearised_at_rest_a_pendulum_has_its_textbook_poles(pendulum: ptp.Machine) -> None:
@@ -210,5 +256,5 @@ def test_it_is_read_as_tables_and_lists_nothing_private(pendulum: ptp.Machine) -
 
 
 def test_markup_in_a_title_stays_text() -> None:
-    machine = ptp.load(replace(PENDULUM, title="<script>alert(1)</script>"))
+    machine = ptp.load(replace(PENDULUM, title="<script>alert(1)</script>"), catalogue_values=True)
     assert "<script>" not in machine._repr_html_()

@@ -14,6 +14,7 @@ from tests.diagnose.spring_table import PLATFORM as TABLE
 
 SAMPLE = ptp.sample("tilted_base")
 PLATFORM = SAMPLE / "platform.toml"
+COUNT = 2.0 * np.pi / 7200
 
 
 @pytest.fixture(scope="module")
@@ -24,6 +25,49 @@ def fitted() -> ptp.FitResult:
 @pytest.fixture(scope="module")
 def found() -> ptp.Diagnosis:
     return ptp.diagnose(PLATFORM, train=SAMPLE / "train", validate=SAMPLE / "validate")
+
+
+NO_DIP = """
+[platform]
+name = "pan"
+axes = ["pan"]
+[[effects]]
+effect = "rigid_bodies"
+[[effects]]
+effect = "csvs_friction"
+axis = "pan"
+[parameters]
+J_pan = { value = 0.05, unit = "kg m^2" }
+F_c_pan = { start = 0.2, unit = "N m" }
+F_s_pan = { same_as = "F_c_pan" }
+F_v_pan = { start = 0.4, unit = "N m s/rad" }
+v_s_pan = { start = 0.05, unit = "rad/s" }
+[signals]
+tau_pan = { role = "input", column = "torque", unit = "N m" }
+theta_pan = { role = "output", column = "angle", unit = "rad", counts_per_revolution = 7200 }
+"""
+
+
+@pytest.mark.long
+def test_without_a_dip_the_stribeck_speed_is_not_determined(tmp_path: Path) -> None:
+    """F_s tied to F_c: the law holds no v_s. Coulomb and viscous friction keep their intervals."""
+    (tmp_path / "pan.toml").write_text(NO_DIP, encoding="utf-8")
+    machine = ptp.load(tmp_path / "pan.toml")
+    t = np.arange(0.0, 6.0, 0.01)
+    torque = 0.9 * np.sin(0.8 * np.pi * t) * np.where(t < 3.0, 1.0, 0.6)
+    truth = {"F_c_pan": 0.3, "F_s_pan": 0.3, "F_v_pan": 0.3, "v_s_pan": 0.02}
+    run = machine.simulate(list(t), tau_pan=(t, torque), parameters=truth)
+    angle = np.rint(run["theta_pan"] / COUNT) * COUNT
+    header = "time [s],torque [N m],angle [rad]"
+    rows = np.column_stack([t, torque, angle])
+    np.savetxt(tmp_path / "run.csv", rows, delimiter=",", header=header, comments="")
+    found = ptp.fit(tmp_path / "pan.toml", [tmp_path / "run.csv"]).parameters
+    assert not found["v_s_pan"].identified
+    assert found["v_s_pan"].interval == (None, None)
+    for name in ("F_c_pan", "F_v_pan"):
+        low, high = found[name].interval
+        assert low - 1e-3 < truth[name] < high + 1e-3
+        assert found[name].identified
 
 
 @pytest.mark.long

@@ -231,7 +231,9 @@ def test_a_delay_of_the_machine_holds_back_what_a_controller_says() -> None:
         EffectDeclaration("viscous_friction", "pan", None),
         EffectDeclaration("input_delay", "pan", None),
     )
-    machine = ptp.load(Platform("late", "Late", ("pan",), 9.81, effects, (), ()))
+    machine = ptp.load(
+        Platform("late", "Late", ("pan",), 9.81, effects, (), ()), catalogue_values=True
+    )
     (delay,) = [n for n in machine.parameter_names if "delay" in n or n.startswith("t_")]
     values = {"J_pan": J, "b_pan": B, delay: 0.025}
     period = 0.01
@@ -272,7 +274,10 @@ def test_a_state_is_the_motion_and_an_output_what_its_sensor_shows() -> None:
         EffectDeclaration(name, None if name == "rigid_bodies" else "pan", None)
         for name in ("rigid_bodies", "viscous_friction", "measurement_lag")
     )
-    machine = ptp.load(Platform("lagging", "Lagging sensor", ("pan",), 9.81, effects, (), ()))
+    machine = ptp.load(
+        Platform("lagging", "Lagging sensor", ("pan",), 9.81, effects, (), ()),
+        catalogue_values=True,
+    )
     (lag,) = [p.name for p in machine.parameters if p.unit == "s"]
     rate, size, lasting = 8.0, 0.3, 3.0
     torque = lambda t: -J * rate**2 * size * math.sin(rate * t)  # noqa: E731

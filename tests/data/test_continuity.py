@@ -57,12 +57,14 @@ def test_samples_that_are_missing_are_no_jump() -> None:
     assert jumps(rounded(WAVE[kept]), TIME[kept], COUNT).size == 0
 
 
-@pytest.mark.parametrize("bits", [12, 16])
-def test_a_counter_that_runs_over_goes_on_by_its_own_span(bits: int) -> None:
-    """Of 2^bits counts, at 3000 counts per revolution: both span more than a turn and no whole
+@pytest.mark.parametrize(
+    ("bits", "cpr"), [(12, 3000), (14, 3000), (16, 3000), (24, 2**22 + 7), (32, 2**30 + 7)]
+)
+def test_a_counter_that_runs_over_goes_on_by_its_own_span(bits: int, cpr: int) -> None:
+    """A register of 2^bits counts begins anew after 2^bits of them, no more and no fewer: of twice
+    the span there is no register for 12, 14, 24 and 32 bits. All span more than a turn and no whole
     number of turns.
     """
-    cpr = 3000
     span = 2.0**bits * 2.0 * np.pi / cpr
     whole = 2.2 * span * np.sin(0.4 * TIME)
     declared = SignalDeclaration("theta_pan", "angle", "rad", "output", counts_per_revolution=cpr)

@@ -84,10 +84,11 @@ def test_a_measurement_of_several_segments_says_which_lines_to_keep(tmp_path: Pa
     end = len(lines)
     with pytest.raises(InputError) as error:
         read_log(written(tmp_path, content), bench(tmp_path))
+    names = "X_Value, volt, angle, Comment"
     said = (
-        f"has 2 segments: lines 8 to {end} ({ROWS} rows of X_Value, volt, angle, Comment); lines"
-        f" {end + 3} to {end + 21} (12 rows of X_Value, volt, angle, Comment). Keep lines 1 to 7"
-        f" and those of one segment, 8 to {end} for the longest,"
+        f"has 2 segments: lines 8 to {end} ({ROWS} rows of {names}); lines {end + 3} to {end + 21}"
+        f" (12 rows of {names}). Keep lines 1 to 7 and those of one segment, 8 to {end} for the"
+        " longest,"
     )
     assert said in str(error.value)
     assert "\n" not in str(error.value)

@@ -81,6 +81,18 @@ def test_a_torque_at_rest_has_the_direction_of_its_sign(tmp_path: Path) -> None:
             Columns(spread="std"),
             "standard deviation is 0 N m",
         ),
+        (
+            "rate [rpm],torque [N m],std [N m]",
+            tuple((*row, 1e-300) for row in ROWS),
+            Columns(spread="std"),
+            "a standard deviation of 1e-300 N m is none of a machine; give at least 1e-12",
+        ),
+        (
+            "rate [rpm],torque [N m],std [N m]",
+            ((*ROWS[0], 1e-3), *((*row, 1e-11) for row in ROWS[1:])),
+            Columns(spread="std"),
+            r"csv:3: the standard deviation is 1e-11 N m beside torques of up to .* leave out `spr",
+        ),
     ],
 )
 def test_points_that_cannot_be_used_are_refused(

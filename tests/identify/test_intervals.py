@@ -219,6 +219,7 @@ def test_logarithmic_parameters_get_the_interval_of_their_logarithm() -> None:
 def test_a_parameter_that_no_run_excites_is_not_identified() -> None:
     fit = one_run(np.column_stack([50 * WAVE, 0 * WAVE]), (J, B), {"J": 0.1, "b": 2.0})
     assert seen(fit) == {"J": True, "b": False}
+    assert [e.has_interval for e in estimates(fit)] == [True, False]
 
 
 def test_two_parameters_that_act_alike_are_not_identified() -> None:
@@ -238,6 +239,7 @@ def test_a_weak_influence_is_not_identified_but_has_an_interval() -> None:
     free = (free_parameter("tau0", 0.5, -100.0, 100.0),)
     weak, strong = (one_run((c * WAVE)[:, None], free, {"tau0": 0.5}) for c in (0.02, 2.0))
     assert seen(weak) == {"tau0": False}
+    assert [e.has_interval for e in estimates(weak)] == [True]
     (found,) = estimates(weak)
     assert found.lower < 0.0 < found.upper
     assert seen(strong) == {"tau0": True}

@@ -223,6 +223,7 @@ def test_friction_that_grows_with_the_load_adds_to_the_torque_that_carries_it(wa
     declared = tuple(EffectDeclaration(e, a, None) for e, a in zip(effects, axis, strict=True))
     platform = Platform("carrying", "Friction under load", ("pan",), 9.81, declared, (), ())
     values = {"J_pan": inertia, "F_c_pan": coulomb, "F_s_pan": coulomb, "F_v_pan": 0.0}
+    values["v_s_pan"] = 0.01  # without influence, F_s being F_c
     rates, accelerations = np.array([[way], [way]]), np.array([[5.0 * way], [-5.0 * way]])
     found = ptp_symbolic.inverse_dynamics(
         platform, (np.zeros((2, 1)), rates, accelerations), values | {"mu_load_pan": mu}

@@ -171,7 +171,7 @@ def fit_table(trial: Trial, found: Sequence[Estimate]) -> dict[str, Any]:
     return {
         e.name: {
             "value": e.value,
-            "ci95": [_finite(e.lower), _finite(e.upper)],
+            "ci95": [_finite(e.lower), _finite(e.upper)] if e.has_interval else [None, None],
             "unit": model.units[e.name],
             "meaning": meanings[e.name],
             "start": declared[e.name],

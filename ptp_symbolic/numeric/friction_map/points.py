@@ -16,6 +16,7 @@ from ptp_symbolic.platform.units import to_si
 FloatArray = NDArray[np.float64]
 
 SMALLEST, LARGEST = 1e-12, 1e12  # in SI units, of rates and torques: any machine's lie between
+FINEST = 1e-9  # of the largest torque: no sensor measures more finely
 MIN_POINTS = 4  # two for Coulomb and viscous friction, one for the scatter, one to leave out
 _PERCENT = re.compile(r"% of (.+)")
 _QUANTITY = re.compile(r"([0-9.]++(?:[eE][+-]?[0-9]+)?) *([^0-9].*)")
@@ -178,6 +179,13 @@ def _check(path: Path, points: Points) -> None:
         raise InputError(
             f"{path}:{line}: the standard deviation is {points.spread.min():g}"
             f" {points.units.torque}; give a positive one in every row, or leave out `spread`."
+        )
+    if points.spread is not None and points.spread.min() < FINEST * np.abs(points.torque).max():
+        line, unit = int(np.argmin(points.spread)) + 2, points.units.torque
+        raise InputError(
+            f"{path}:{line}: the standard deviation is {points.spread.min():g} {unit} beside"
+            f" {word}s of up to {np.abs(points.torque).max():g} {unit}, finer than any sensor; give"
+            " that of repeated readings, or leave out `spread`."
         )
     if points.torque @ points.rate < 0.0:
         raise InputError(

@@ -37,8 +37,8 @@ BoolArray = NDArray[np.bool_]
 class Estimate:
     """A fitted value with its 95 % confidence interval; SI. `identified` is False where the
     interval reaches further from the value than its size, or the data do not see the parameter at
-    all: then the interval is that of its bounds. `only_with` names parameters of which the data see
-    a combination alone, such as the sum of two viscous frictions in one joint.
+    all: then it has no interval, `lower` and `upper` are its bounds. `only_with` names parameters
+    of which the data see a combination alone, such as the sum of two viscous frictions in a joint.
     """
 
     name: str
@@ -48,6 +48,7 @@ class Estimate:
     at_bound: bool
     identified: bool
     only_with: tuple[str, ...] = ()
+    has_interval: bool = True
 
 
 def estimates(fit: Fit) -> tuple[Estimate, ...]:
@@ -70,7 +71,8 @@ def estimates(fit: Fit) -> tuple[Estimate, ...]:
         near = 1e-4 * max(abs(free.start), abs(value))
         at_bound = value - free.lower <= near or free.upper - value <= near
         seen = bool(np.isfinite(width) and width < 1.0)
-        result.append(Estimate(free.name, value, low, high, bool(at_bound), seen, partners))
+        told = bool(np.isfinite(spreads[index]))
+        result.append(Estimate(free.name, value, low, high, bool(at_bound), seen, partners, told))
     return tuple(result)
 
 
