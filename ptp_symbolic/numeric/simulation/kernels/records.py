@@ -198,7 +198,7 @@ MACHINE_TYPES = (
     types.boolean,  # inputs are constant between stops
 )
 _INT = types.int64
-EQUATIONS_TYPE = types.Tuple((*[_INT] * 5, _V, _V, _I, _I, _INT, _INT, TABLE_OF_CONTACTS))
+EQUATIONS_TYPE = types.Tuple((*[_INT] * 4, _V, _V, _I, _I, _INT, _INT, TABLE_OF_CONTACTS))
 INPUTS_TYPE = types.Tuple((TABLE, _I, types.boolean, _V, _V))
 STEP_TYPE = types.Tuple((_V, _V, _M, _M, _V, _M, _M, _M, _M, _M, _M, _I, _V, _V, _V))
 WATCH_TYPE = types.Tuple(
