@@ -246,7 +246,7 @@ SEARCH = (
     ("a_F_s_pan", 0.0, (0.0,), None, None),
     ("a_v_s_pan", 0.0, (0.0,), None, None),
     ("a_F_v_pan", 0.0, (0.0,), None, None),
-    ("gap_pan", 0.0, (0.005, 0.02), None, None),
+    ("gap_pan", 0.0, (0.005, 0.02, 0.05), None, None),
     ("k_shaft_pan", None, (100.0, 3000.0), None, None),
     ("d_shaft_pan", None, (1.0,), None, None),
 )
@@ -4775,4 +4775,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 dbcc816d48062ffa7716811cae8cee8ae1f989f83522d2c77a9b1bce5655d05f
+# END sha256 ddd72f11777b63d8d39f901fba4d5efe4bb22fae0004602591af914597389fb2

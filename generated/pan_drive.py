@@ -125,7 +125,7 @@ SEARCH = (
     ("a_F_s_pan", 0.0, (0.0,), None, None),
     ("a_v_s_pan", 0.0, (0.0,), None, None),
     ("a_F_v_pan", 0.0, (0.0,), None, None),
-    ("gap_pan", 0.0, (0.005, 0.02), None, None),
+    ("gap_pan", 0.0, (0.005, 0.02, 0.05), None, None),
     ("k_shaft_pan", None, (100.0, 3000.0), None, None),
     ("d_shaft_pan", None, (1.0,), None, None),
 )
@@ -860,4 +860,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 3f60181ead1ebee386785c19b7ddc8aa9569124c57c5fa36c352fd027d3d67aa
+# END sha256 81c79bab77885daaff9b60d3bcc4b0288e2dadd6c1f512bc1b66687d72a71974
