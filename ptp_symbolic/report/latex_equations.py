@@ -10,7 +10,7 @@ from ptp_symbolic.report.latex_text import escaped, numbered
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.documents.comparison import Change
 from ptp_symbolic.symbolic.documents.latex import symbol_latex
-from ptp_symbolic.symbolic.documents.statements import RELATIONS, Statement
+from ptp_symbolic.symbolic.documents.statements import MANY_TERMS, RELATIONS, Statement
 
 
 def displayed_rows(rows: Sequence[Statement], equations: Equations) -> str:
@@ -37,8 +37,10 @@ def in_words(text: str) -> str:
     )
 
 
-def displayed_changes(changes: Sequence[Change]) -> str:
-    """What one machine has that another has not, equation by equation."""
+def displayed_changes(changes: Sequence[Change], elsewhere: str = "") -> str:
+    """What one machine has that another has not, equation by equation; a sum of many terms by its
+    name alone, where all equations of the machine stand in the section `elsewhere`.
+    """
     parts = []
     for change in changes:
         statement, added = change.statement, _added(change)
@@ -53,6 +55,9 @@ def displayed_changes(changes: Sequence[Change]) -> str:
             )
         else:
             new = "New" if change.before is None else "Now"
+            if elsewhere and len(sp.Add.make_args(statement.right)) > MANY_TERMS:
+                parts.append(rf"\par {new}: {words}, as in section {elsewhere}.")
+                continue
             parts.append(rf"\par {new}: {words}:" + numbered([(left, statement.right)], relation))
     return "\n".join(parts)
 

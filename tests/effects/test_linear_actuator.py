@@ -13,7 +13,8 @@ from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.inputs import constant, table
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, read_platform
 from ptp_symbolic.symbolic.mechanisms.linkage import Linkage
-from ptp_symbolic.symbolic.mechanisms.screw import Screw
+from ptp_symbolic.symbolic.mechanisms.screw import Screw, ScrewFriction
+from ptp_symbolic.symbolic.symbols import real
 from tests.independent import rigid_platform, tilt_drive
 from tests.independent.tilt_drive import TiltDrive
 
@@ -84,6 +85,46 @@ def test_named_functions_of_the_ratio_are_the_ratio() -> None:
         ratio = ratio.xreplace({symbol: term})
     difference = sp.lambdify(ANGLE, ratio - machine.ratio(ANGLE))(np.linspace(-1.5, 0.9, 9))
     assert np.abs(difference).max() < 1e-15
+
+
+def test_the_friction_of_the_screw_follows_from_its_forces_step_by_step() -> None:
+    """The balance of a wedge on a slope, in numbers: each step holds with those before it, and ends
+    at the torques of Eq. 3.12 and at the friction that the equations have.
+    """
+    lead, diameter, rub, load = 4e-3, 8e-3, 0.15, 700.0
+    driving, torque, inertia, own = 9.0, -4.0, 0.05, 2.0
+    symbols = sp.symbols("lead d f driving torque inertia own", real=True)
+    given = dict(zip(symbols, (lead, diameter, rub, driving, torque, inertia, own), strict=True))
+    own_screw = Screw(*symbols[:3])
+    friction = ScrewFriction("tilt", own_screw, *symbols[3:])
+    slope = math.atan(lead / (math.pi * diameter))
+    known: dict[sp.Expr, float] = {real("lambda_lead_tilt"): slope, real("F_load_tilt"): load}
+    values: dict[str, list[float]] = {}
+    (_, tangent, ratio), *steps = friction.steps()
+    assert tangent == sp.tan(real("lambda_lead_tilt"))
+    assert float(ratio.subs(given)) == pytest.approx(math.tan(slope))
+    for _, left, right in steps:
+        if left.is_Symbol:  # else a balance, from which the next step is solved
+            known[left] = float(right.subs(given).subs(known))
+            values.setdefault(left.name, []).append(known[left])
+    angle = math.atan(rub)
+    assert values["T_raise_tilt"] == pytest.approx(
+        [load * diameter / 2 * math.tan(slope + angle)] * 2
+    )
+    assert values["T_lower_tilt"] == pytest.approx(
+        [load * diameter / 2 * math.tan(angle - slope)] * 2
+    )
+    (raised,), (lowered,) = values["raised_tilt"], values["lowered_tilt"]
+    assert raised == pytest.approx(math.tan(slope + angle) / math.tan(slope))
+    assert lowered == pytest.approx(math.tan(slope - angle) / math.tan(slope))
+    # motor and joint turn together: what the motor gives, less its inertia, is what the screw takes
+    for share, passed in zip((raised, lowered), values["T_passed_tilt"], strict=True):
+        assert (driving - share * passed) / own == pytest.approx((torque + passed) / inertia)
+    terms = {symbol: term.subs(given) for symbol, term in friction.terms.items()}
+    sliding = friction.sliding(sp.Integer(1)).subs(given)
+    for symbol in reversed(list(terms)):
+        sliding = sliding.subs(symbol, terms[symbol])
+    assert float(sliding) == pytest.approx(values["T_friction_tilt"][0])
 
 
 def test_screw_is_eq_3_12_by_lead_and_friction_angle() -> None:

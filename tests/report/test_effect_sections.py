@@ -16,12 +16,14 @@ from ptp_symbolic.report.derivation import has_warning
 from ptp_symbolic.report.derivation.curves import PACKAGES
 from ptp_symbolic.report.derivation.effects import effect_section
 from ptp_symbolic.report.derivation.power import judged
+from ptp_symbolic.report.latex_equations import displayed_changes
 from ptp_symbolic.report.latex_text import PREAMBLE
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.equations import Ledger
+from ptp_symbolic.symbolic.documents.comparison import Change
 from ptp_symbolic.symbolic.documents.latex import symbol_latex
 from ptp_symbolic.symbolic.documents.laws import laws
-from ptp_symbolic.symbolic.documents.statements import statements
+from ptp_symbolic.symbolic.documents.statements import Statement, statements
 from ptp_symbolic.symbolic.effects import EFFECTS, Effect
 from tests.effects.bases import IDS
 from tests.report.sections import law_of, section
@@ -164,3 +166,18 @@ def test_an_effect_that_vanishes_as_declared_is_drawn_at_the_start_of_a_search()
     ((_, points),) = curves(there)
     rate, torque = points.T
     np.testing.assert_allclose(torque, -0.5 * rate * np.abs(rate), atol=1e-4)
+
+
+def test_a_sum_of_many_terms_stands_once_and_is_named_after() -> None:
+    """Where all equations stand in a section, and else, as between two machines, in full."""
+    long = sp.Add(*(sp.Symbol(f"c_{k}") * sp.Symbol(f"w_{k}") for k in range(20)))
+    short = sp.Symbol("c_1") + sp.Symbol("w_1")
+    changes = [
+        Change(Statement(("term", "T_load_tilt"), "T_load_tilt by its name", ZERO, long), None),
+        Change(Statement(("term", "J_load_tilt"), "J_load_tilt by its name", ZERO, short), None),
+    ]
+    text = displayed_changes(changes, "Equations of motion")
+    assert "by its name, as in section Equations of motion." in text
+    assert "w_{\\mathrm{7}}" not in text and "w_{7}" not in text
+    assert text.count(r"\begin{align}") == 1
+    assert displayed_changes(changes).count(r"\begin{align}") == 2

@@ -19,7 +19,7 @@ STEP, HOLD = 1e-3, 0.05  # s
 
 def beside(platform: Platform, duration: float, volts: float, folder: Path) -> tuple[float, int]:
     """Largest difference of any state, and how many events the simulation notes."""
-    machine = ptp.load(platform)
+    machine = ptp.load(platform, catalogue_values=True)
     library = compiled(
         program(possible_equations(platform)), "machine", C99_DOUBLE, folder, COMPILERS[0]
     )

@@ -6,6 +6,7 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.report.derivation.curves import curve
 from ptp_symbolic.report.derivation.power import power
+from ptp_symbolic.report.derivation.results import EQUATIONS
 from ptp_symbolic.report.latex_equations import displayed_changes, displayed_rows
 from ptp_symbolic.report.latex_text import escaped, numbered, table, unit_latex
 from ptp_symbolic.report.source import THESIS
@@ -44,7 +45,7 @@ def effect_section(law: Law, platform: Platform, equations: Equations) -> str:
             rf"{{\raggedright\par Compared without it, and without what needs it: {names}.\par}}"
         )
     shown = {(row.left, row.right) for row in law.rows}
-    parts.append(displayed_changes([c for c in changes if _is_news(c, shown)]))
+    parts.append(displayed_changes([c for c in changes if _is_news(c, shown)], EQUATIONS))
     return "\n".join(parts)
 
 

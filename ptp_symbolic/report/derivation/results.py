@@ -13,12 +13,14 @@ from ptp_symbolic.symbolic.documents.statements import (
 )
 from ptp_symbolic.symbolic.effect_interface.place import active, slide
 
+EQUATIONS = "Equations of motion"  # the section in which every statement of a machine stands
+
 
 def equations_of_motion(equations: Equations) -> str:
     """Section with mass matrix, torques, modes, states and signals of the whole machine."""
     found = statements(equations)
     sums = [s for s in found if s.sums and s.right != 0]
-    parts = [r"\section{Equations of motion}", r"$M(q)\,\dot\omega = f$, with", _displayed(sums)]
+    parts = [rf"\section{{{EQUATIONS}}}", r"$M(q)\,\dot\omega = f$, with", _displayed(sums)]
     for friction in equations.frictions:
         rate, direction = (symbol_latex(str(s)) for s in (friction.rate, slide(friction.axis)))
         parts.append(

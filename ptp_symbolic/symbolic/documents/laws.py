@@ -108,7 +108,10 @@ def _law(
         effect.worded_at(place),
         place,
         _stated(added, own),
-        tuple(row for row in _rows(added, own, changes) if row.right not in (0, row.left)),
+        (
+            *_derived(effect, place, own),
+            *(row for row in _rows(added, own, changes) if row.right not in (0, row.left)),
+        ),
         ledger,
         tuple(frictions),
         changes,
@@ -177,6 +180,13 @@ def _ledger(added: Contribution, own: Contributions, place: Place) -> Ledger:
     if not added.drives:
         parts = (stored, ZERO, dissipated - found.power_in)
     return Ledger(*(_named(own.resolve(part)) for part in parts))
+
+
+def _derived(effect: Effect, place: Place, own: Contributions) -> Iterator[Statement]:
+    """The steps from a principle to the law of an effect, as it states them."""
+    for words, left, right in effect.derived(place):
+        sides = _named(own.resolve(left)), _named(own.resolve(right))
+        yield Statement(("step", str(sides[0])), words, *sides)
 
 
 def _rows(

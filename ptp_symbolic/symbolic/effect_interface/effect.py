@@ -10,6 +10,8 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any
 
+import sympy as sp
+
 from ptp_symbolic.symbolic.effect_interface.conditions import Requirement
 from ptp_symbolic.symbolic.effect_interface.contribution import Contribution
 from ptp_symbolic.symbolic.effect_interface.linear import (
@@ -28,6 +30,13 @@ def _always(place: Place, parameter: Parameter) -> bool:
 @lru_cache(maxsize=1024)
 def _contribution(contribute: Callable[[Place], Contribution], place: Place) -> Contribution:
     return contribute(place)
+
+
+Step = tuple[str, sp.Expr, sp.Expr]
+
+
+def _without_steps(place: Place) -> tuple[Step, ...]:
+    return ()
 
 
 def _without_conditions(place: Place) -> tuple[Requirement, ...]:
@@ -76,7 +85,8 @@ class Effect:
     whole last; where `first_leads`, what the others add to the first can only be smaller. Other
     `kinds` share its id; this is the usual one. `linear` has the texts that are others on a linear
     joint, where they do not follow word by word; what makes no sense there says
-    `instead_on_linear` why.
+    `instead_on_linear` why. `derived` has the steps from a principle to its law: words, left and
+    right side of each.
 
     Raises ValueError for a parameter whose default, starts or vanishing value lie out of its
     bounds, and for a member with parameters that are not the effect's.
@@ -105,6 +115,7 @@ class Effect:
     linear: Mapping[str, str] | None = field(default=None, hash=False)
     instead_on_linear: str = ""
     structure: Structure | None = None
+    derived: Callable[[Place], tuple[Step, ...]] = _without_steps
 
     def __post_init__(self) -> None:
         for parameter in self.parameters:

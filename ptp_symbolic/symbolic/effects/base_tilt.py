@@ -45,7 +45,7 @@ def _contribute(place: Place) -> Contribution:
 BASE_TILT = Effect(
     id="base_tilt",
     title="base that is not level",
-    reference="gravity turned by two angles in thesis Eq. 3.8 with payload (section 3.2.2)",
+    reference="gravity as a force on every body, thesis section 2.2.1, turned by two angles",
     parameters=(TILT, AZIMUTH),
     contribute=_contribute,
     on_axis=False,

@@ -27,7 +27,7 @@ def _contribute(place: Place) -> Contribution:
 CONSTANT_TORQUE = Effect(
     id="constant_torque",
     title="constant torque on the joint",
-    reference="mean of wind, or a preload: a constant right-hand side of thesis Eq. 3.8",
+    reference="mean of wind, or a preload: beside the efforts e_1, e_2 of thesis Eq. 3.8",
     parameters=(TORQUE,),
     contribute=_contribute,
     separating_experiment="Drive the same speeds in both directions with the motor leads swapped:"

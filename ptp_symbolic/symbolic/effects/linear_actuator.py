@@ -9,7 +9,7 @@ import sympy as sp
 
 from ptp_symbolic.symbolic.effect_interface.conditions import Limit, Requirement
 from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, Friction
-from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.effect import Effect, Step
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.effects.dc_motor import electric_drive, motor_parameters
@@ -53,6 +53,11 @@ def _contribute(place: Place) -> Contribution:
     return replace(added, terms=terms, frictions=frictions, limits=limits)
 
 
+def _derived(place: Place) -> tuple[Step, ...]:
+    axis, (screw, *_) = place.own_axis, _machinery(place)
+    return tuple(ScrewFriction(axis, screw, *place.loads, real(f"J_drive_{axis}")).steps())
+
+
 def _requires(place: Place) -> tuple[Requirement, ...]:
     screw, linkage, longest = _machinery(place)
     return (
@@ -68,6 +73,7 @@ LINEAR_ACTUATOR = Effect(
     reference="thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6",
     parameters=PARAMETERS,
     contribute=_contribute,
+    derived=_derived,
     structural=True,
     requires=_requires,
     instead_on_linear="its linkage turns a joint: declare dc_motor, with N in rad/m",

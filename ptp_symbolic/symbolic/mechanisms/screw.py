@@ -49,6 +49,31 @@ class Screw:
         """Power out of the screw over power of the load, the load driving; negative: it locks."""
         return -self.turning * self.lowering
 
+    def steps(self, axis: str) -> list[tuple[str, sp.Expr, sp.Expr]]:
+        """From the forces on the flank to the two lines of Eq. 3.12: words, left and right side."""
+        slope, load, flank = (real(f"{n}_{axis}") for n in ("lambda_lead", "F_load", "N_flank"))
+        up, along = self.lead, sp.pi * self.diameter
+        length = sp.sqrt(up**2 + along**2)
+        turns = {sp.sin(slope): up / length, sp.cos(slope): along / length}
+        found = [
+            ("the thread unrolled is a wedge, lambda_lead its angle", sp.tan(slope), up / along)
+        ]
+        for word, sign in (("raise", 1), ("lower", -1)):
+            normal = load / (sp.cos(slope) - sign * self.friction * sp.sin(slope))
+            turning = self.friction * sp.cos(slope) + sign * sp.sin(slope)
+            torque = real(f"T_{word}_{axis}")
+            whole = (self.diameter / 2 * normal * turning).xreplace(turns)
+            found += [
+                (
+                    f"to {word} the load F_load: balance along the axis, N_flank on it",
+                    flank,
+                    normal,
+                ),
+                ("balance about the axis", torque, self.diameter / 2 * flank * turning),
+                ("both, and the wedge: thesis Eq. 3.12", torque, sp.factor(sp.simplify(whole))),
+            ]
+        return found
+
     @property
     def self_locking(self) -> sp.Rel:
         """True where no load, however large, drives the screw (erratum 10)."""
@@ -97,6 +122,32 @@ class ScrewFriction:
             lost[0]: (raised - 1) / (raised * self.load + self.own),
             lost[1]: (1 - lowered) / sp.Abs(lowered * self.load + self.own),
         }
+
+    def steps(self) -> list[tuple[str, sp.Expr, sp.Expr]]:
+        """From the two torques of the screw to its friction in motion: words, left and right side.
+
+        The screw passes `T_passed` on to the joint, and takes `raised` or `lowered` times as much.
+        """
+        raised, lowered, *_ = self._names
+        names = ("T_passed", "alpha", "T_friction", "F_load", "T_raise", "T_lower")
+        passed, speed, friction, force, *torques = (real(f"{n}_{self.axis}") for n in names)
+        found = self.screw.steps(self.axis)
+        ways = (
+            ("motor", raised, torques[0], raised - 1),
+            ("load", lowered, -torques[1], 1 - lowered),
+        )
+        for driver, share, torque, lost in ways:
+            motor, joint = self.driving - share * passed, self.torque + passed
+            both = sp.linsolve([self.own * speed - motor, self.load * speed - joint], speed, passed)
+            ((_, solved),) = both
+            found += [
+                (f"power, the {driver} driving", share, self.screw.turning * torque / force),
+                ("so that the motor accelerates by", self.own * speed, motor),
+                ("and the joint by", self.load * speed, joint),
+                ("both solved for what is passed on", passed, sp.factor(solved)),
+                ("friction takes the difference", friction, lost * sp.Abs(passed)),
+            ]
+        return found
 
     def sliding(self, direction: sp.Expr) -> sp.Expr:
         """Torque while the joint moves in `direction` (-1 or 1)."""
