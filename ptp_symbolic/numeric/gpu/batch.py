@@ -34,7 +34,7 @@ METHODS = (EXPLICIT, FIXED_STEP)
 @dataclass(frozen=True, eq=False)
 class GpuStates:
     """How b trajectories ended: status [b] (see `kernels.records`, or IMPOSSIBLE) and `reasons` [b]
-    in words, empty where it is DONE; steps tried [b]; final states x [b, n], NaN where a run failed.
+    in words, empty where it is DONE; steps tried [b]; final states x [b, n], NaN where it failed.
     """
 
     status: IntArray
@@ -77,7 +77,8 @@ def integrate_on_gpu(
             raise InputError(f"{name} {value:g} s; give a positive number of seconds.")
     if chosen == FIXED_STEP and (end - begin) / step > MOST_STEPS:
         raise InputError(
-            f"Step {step:g} s for {end - begin:g} s; give one that makes at most {MOST_STEPS} steps."
+            f"Step {step:g} s for {end - begin:g} s; give one of at least"
+            f" {(end - begin) / MOST_STEPS:g} s, which makes {MOST_STEPS} steps."
         )
     accuracy = checked_accuracy(model, rtol, atol, largest_step)
     cuda = cuda_library()
@@ -107,10 +108,11 @@ def integrate_on_gpu(
 
 
 def cuda_library() -> ModuleType:
-    """numba's CUDA, on a GPU or in its simulator. Raises InputError where there is neither."""
+    """CUDA for numba, on a GPU or in its simulator. Raises InputError where there is neither."""
     if importlib.util.find_spec("numba_cuda") is None:
         raise InputError(
-            "numba-cuda is not installed; run pip install 'ptp-symbolic[gpu]', or leave the GPU out."
+            "numba-cuda is not installed; run pip install 'ptp-symbolic[gpu]', or leave the GPU"
+            " out."
         )
     from numba import cuda
 
@@ -143,7 +145,8 @@ def _method(model: Model, method: str | None) -> str:
     ):
         if found:
             raise InputError(
-                f"Model '{model.name}' has {what}, which have no kernel on a GPU; leave the GPU out."
+                f"Model '{model.name}' has {what}, for which a GPU has no kernel; leave the GPU"
+                " out."
             )
     return chosen
 

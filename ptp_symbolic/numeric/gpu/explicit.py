@@ -16,7 +16,7 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     OUTSIDE,
     TOO_FAST,
 )
-from ptp_symbolic.numeric.simulation.methods.runge_kutta import A, C, ERROR, ORDER, STAGES
+from ptp_symbolic.numeric.simulation.methods.runge_kutta import ERROR, ORDER, STAGES, A, C
 
 SHORTEST = 1e-11  # s
 SAFETY, LEAST, MOST = 0.9, 0.2, 5.0  # factors by which a step length changes

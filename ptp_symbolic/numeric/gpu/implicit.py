@@ -55,7 +55,7 @@ def integrate_in_steps(machine, signals, work, begin, end, step):
         if steps == 0 and not choose_start_modes(machine, work, t):
             return UNDECIDED, t, steps
         start, stop = t, next_stop(t, end, signals)
-        count = max(1, int(math.ceil((stop - start) / step - 1e-9)))
+        count = max(1, math.ceil((stop - start) / step - 1e-9))
         h = (stop - start) / count
         for index in range(count):
             after = stop if index + 1 == count else start + (index + 1) * h
@@ -100,11 +100,11 @@ def copy(source, target):
 
 @register_jitable
 def is_coupled(a, row):
-    """Whether a row has more than its diagonal: else it is never exchanged, or rests would creep."""
+    """Whether a row has more than its diagonal; else it is not exchanged, or rests would creep."""
+    found = False
     for j in range(len(a)):
-        if j != row and a[row, j] != 0.0:
-            return True
-    return False
+        found = found or (j != row and a[row, j] != 0.0)
+    return found
 
 
 @register_jitable
@@ -150,7 +150,7 @@ def solve(a, order, b):
 
 @register_jitable
 def factor_step(machine, work, reach, t, u):
-    """Factor I - `reach` Jacobian, `reach` in s; rows of sticking rates are those of the identity."""
+    """Factor I - `reach` Jacobian, `reach` in s; rows of sticking rates are the identity's."""
     n, a, none = len(machine.x), work.matrix, work.by_state[:0]
     machine.linearize(
         t, machine.x, u, machine.p, machine.m, work.by_state, work.by_input, none, none, none

@@ -90,7 +90,7 @@ def smooth_kernel(layout: Layout) -> Any:
 
 @lru_cache(maxsize=16)
 def stepping_kernel(layout: Layout) -> Any:
-    """The kernel of any model: steps of fixed length that find the modes of friction and contact."""
+    """The kernel of all models: fixed steps that find the modes of friction and contact."""
     module, f = layout.module, float64
     derivative, linearize = module.prepared_derivative, module.linearize
     guards, prepare, domain = module.guards, module.prepare, module.domain

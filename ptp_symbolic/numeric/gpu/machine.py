@@ -108,10 +108,10 @@ class Machine(NamedTuple):
 @register_jitable
 def is_finite(x):
     """Whether every state of x [n] is a number, and not a huge one."""
+    found = True
     for a in range(len(x)):
-        if not abs(x[a]) < LARGEST_STATE:
-            return False
-    return True
+        found = found and abs(x[a]) < LARGEST_STATE
+    return found
 
 
 @register_jitable
