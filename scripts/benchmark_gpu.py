@@ -82,11 +82,11 @@ def on_gpu(name: str, count: int, cuda: Any) -> str:
     model, p, x, signals = problem(name, count)
     method = CASES[name][0]
     how: dict[str, Any] = ACCURACY if method == "runge_kutta" else {"step": STEP}
-    seconds, steps = np.inf, np.zeros(1)
+    seconds, steps = np.inf, 0
     for _ in range(3):
         start = time.perf_counter()
         found = integrate_on_gpu(model, p, x, [signals], None, (0.0, DURATION), method, **how)
-        seconds, steps = min(seconds, time.perf_counter() - start), found.steps
+        seconds, steps = min(seconds, time.perf_counter() - start), int(found.steps.sum())
     n, each = len(model.state_names), operations(model)
     work = DERIVATIVES * each if method == "runge_kutta" else 2 * each + 2 / 3 * n**3
     device = cuda.get_current_device()
@@ -96,7 +96,7 @@ def on_gpu(name: str, count: int, cuda: Any) -> str:
     return (
         f"{name:9s} {count} trajectories of {DURATION:g} s, {method}: {own:,.0f} per s,"
         f" {rate:,.0f} on one core ({own / rate:.0f} x);"
-        f" {100 * steps.sum() * work / seconds / peak:.2g} % of the peak of"
+        f" {100 * steps * work / seconds / peak:.2g} % of the peak of"
         f" {peak / 1e12:.3g} TFLOP/s"
     )
 
@@ -134,7 +134,7 @@ def device_code(name: str, capability: tuple[int, int]) -> str:
     with tempfile.TemporaryDirectory() as folder:
         source = Path(folder, "kernel.ptx")
         source.write_text(code, encoding="utf-8")
-        command = [assembler, architecture, "-v", source, "-o", source.with_suffix(".cubin")]
+        command = [str(assembler), architecture, "-v", str(source), "-o", f"{source}.cubin"]
         said = subprocess.run(command, capture_output=True, text=True, check=True).stderr
     registers, stack, stores, loads = (
         max(int(number) for number in re.findall(pattern, said))

@@ -193,11 +193,11 @@ def _impossible(model: Model, p: FloatArray, x: FloatArray) -> tuple[IntArray, l
         said = f"State '{name}' starts at {x[b, j]} {model.units[name]}; give a finite number."
         reasons[b] = reasons[b] or said
     if model.module.REQUIREMENTS:
-        for b in [b for b, why in enumerate(reasons) if not why]:
+        for row in [b for b, why in enumerate(reasons) if not why]:
             try:
-                model.refuse_impossible(p[b])
+                model.refuse_impossible(p[row])
             except InputError as error:
-                reasons[b] = str(error)
+                reasons[row] = str(error)
     status[[bool(why) for why in reasons]] = IMPOSSIBLE
     return status, reasons
 

@@ -51,7 +51,7 @@ def smooth_kernel(layout: Layout) -> Any:
     rates, zero_at_rest, stages = layout.friction_rates, layout.zero_at_rest, STAGES
 
     @cuda.jit
-    def run_smooth(runs, drives, begin, end, accuracy):  # type: ignore[no-untyped-def]
+    def run_smooth(runs, drives, begin, end, accuracy):
         i, local = cuda.grid(1), cuda.local.array
         if i >= len(runs.status) or runs.status[i] != READY:
             return
@@ -101,7 +101,7 @@ def stepping_kernel(layout: Layout) -> Any:
     rates, zero_at_rest = layout.friction_rates, layout.zero_at_rest
 
     @cuda.jit
-    def run_in_steps(runs, drives, begin, end, step):  # type: ignore[no-untyped-def]
+    def run_in_steps(runs, drives, begin, end, step):
         i, local = cuda.grid(1), cuda.local.array
         if i >= len(runs.status) or runs.status[i] != READY:
             return
