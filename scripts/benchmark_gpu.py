@@ -124,7 +124,7 @@ def device_code(name: str, capability: tuple[int, int]) -> str:
     from ptp_symbolic.numeric.gpu.machine import Runs
 
     f, v, m, i = types.float64, types.float64[::1], types.float64[:, ::1], types.int64[::1]
-    runs = types.NamedTuple((m, m, i, i, v, i), Runs)
+    runs = types.NamedTuple((m, m, m, i, i, v, i), Runs)
     drives = types.NamedTuple((v, m, i, m, i, m, i, v, i), Drives)
     smooth, layout = CASES[name][0] == "runge_kutta", Layout.of(ptp.load(name))
     kernel = smooth_kernel(layout) if smooth else stepping_kernel(layout)

@@ -8,10 +8,13 @@ import numpy as np
 import pytest
 
 import ptp_symbolic as ptp
+from ptp_symbolic.api.machine import Machine
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.gpu.batch import IMPOSSIBLE, GpuStates, integrate_on_gpu, is_simulated
 from ptp_symbolic.numeric.simulation.kernels.records import DIVERGED, DONE
 from ptp_symbolic.numeric.simulation.signals.inputs import constant, parse_profile, table
+from tests.effects.test_backlash_kinds import PUSHED, platform
 
 
 @pytest.fixture(autouse=True)
@@ -76,8 +79,8 @@ def test_a_payload_moves_as_in_single_runs_through_jumps_tables_and_sines() -> N
 
 
 def test_a_drive_sticks_slides_and_crosses_its_gap_as_in_single_fixed_steps() -> None:
-    model, end, h = ptp.load("pan_drive"), 0.22, 2e-3
-    signals = [parse_profile("trapezoid:24,0.05,0.1,0.05@0.011", end)]
+    model, end, h = ptp.load("pan_drive"), 0.26, 2e-3
+    signals = [parse_profile("trapezoid:12,0.12,0.05,0.02@0.011", end)]
     p, x = _rows(model, 2)
     x[1, model.state_names.index("omega_gear_pan")] = -0.3
     found = integrate_on_gpu(model, p, x, [signals], None, (0.0, end), step=h)
@@ -147,3 +150,30 @@ def test_what_has_no_kernel_is_refused() -> None:
         integrate_on_gpu(model, p, x, [[constant(0.0)] * 2], None, (0.0, 1.0))
     with pytest.raises(InputError, match="one for each of 2 runs, from 0 to 0"):
         integrate_on_gpu(model, p, x, [[constant(0.0)]], np.array([0, 1]), (0.0, 1.0))
+
+
+@pytest.mark.parametrize("kind", ["elastic_impact", "hysteresis_friction"])
+def test_rigid_faces_strike_and_rest_as_in_single_fixed_steps(kind: str) -> None:
+    model = Machine(emission.emit(platform(kind)).module)
+    end, h, given = 0.3, 2e-3, {**PUSHED, "e_gap_pan": 0.3}
+    given = {name: value for name, value in given.items() if name in model.parameter_names}
+    p = np.repeat(model.parameter_vector(given)[None], 3, 0)
+    x = np.zeros((3, len(model.state_names)))
+    x[:, model.state_names.index("i_pan")] = 50.0, -30.0, 50.0
+    x[2, model.state_names.index("theta_gear_pan")] = 0.1  # beyond the face
+    signals = [constant(500.0)]
+    found = integrate_on_gpu(model, p, x, [signals], None, (0.0, end), step=h)
+    single = _one_by_one(model, signals, x[:2], end, method="fixed_step", step=h, parameters=given)
+    run = ptp.simulate(
+        model,
+        [0.0, end],
+        inputs={"u_pan": signals[0]},
+        parameters=given,
+        initial={"i_pan": 50.0},
+        method="fixed_step",
+        step=h,
+    )
+    assert any("upper face" in event.mode for event in run.events)
+    assert found.status.tolist() == [DONE, DONE, IMPOSSIBLE]
+    assert "beyond a rigid face" in found.reasons[2]
+    assert found.x[:2] == pytest.approx(single, abs=1e-11)

@@ -16,10 +16,22 @@ from ptp_symbolic.numeric.gpu.drives import Drives, drives_of
 from ptp_symbolic.numeric.gpu.explicit import Accuracy
 from ptp_symbolic.numeric.gpu.machine import Layout, Runs
 from ptp_symbolic.numeric.runtime.model import BOUND_SLACK, Model
-from ptp_symbolic.numeric.simulation.integration import EXPLICIT, checked_accuracy, default_method
+from ptp_symbolic.numeric.simulation.buffers import new_watch
+from ptp_symbolic.numeric.simulation.integration import (
+    EXPLICIT,
+    checked_accuracy,
+    default_method,
+    refuse_start,
+)
 from ptp_symbolic.numeric.simulation.kernels.records import DONE, EXHAUSTED
 from ptp_symbolic.numeric.simulation.run import FIXED_STEP, refuse_failure
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal
+from ptp_symbolic.numeric.simulation.signals.inputs import (
+    InputSignal,
+    delayed,
+    delays_of,
+    stack,
+    values_at,
+)
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -61,7 +73,7 @@ def integrate_on_gpu(
     `drives` are the signals of all inputs, in the order of the model, for every kind of run;
     `drive` [b] says which one drives a trajectory, None that there is one kind. `method` is
     "runge_kutta" for smooth models, within rtol and atol (see `simulate`), or "fixed_step" for all
-    with sprung contacts, in steps of at most `step` s; None lets the model choose.
+    without sampled controllers, in steps of at most `step` s; None lets the model choose.
 
     Values that are impossible, and runs that do not reach their end, are reported in their place.
     Raises InputError for arrays of another shape, for a model that has no method here, for a span,
@@ -88,6 +100,7 @@ def integrate_on_gpu(
     runs = Runs(
         np.ascontiguousarray(x.T, np.float64),
         np.ascontiguousarray(p.T, np.float64),
+        _start_modes(model, p, x, drives, kind, begin, status, reasons),
         kind,
         status.copy(),
         np.zeros(count),
@@ -139,15 +152,11 @@ def _method(model: Model, method: str | None) -> str:
             f"Model '{model.name}' has friction or contact, and runge_kutta on a GPU locates no"
             " events; take the method fixed_step."
         )
-    for what, found in (
-        ("rigid contacts", model.contacts[:, 2].any()),
-        ("sampled controllers", len(model.sampler_periods)),
-    ):
-        if found:
-            raise InputError(
-                f"Model '{model.name}' has {what}, for which a GPU has no kernel; leave the GPU"
-                " out."
-            )
+    if len(model.sampler_periods):
+        raise InputError(
+            f"Model '{model.name}' has a sampled controller, for which a GPU has no kernel; leave"
+            " the GPU out."
+        )
     return chosen
 
 
@@ -200,6 +209,36 @@ def _impossible(model: Model, p: FloatArray, x: FloatArray) -> tuple[IntArray, l
                 reasons[row] = str(error)
     status[[bool(why) for why in reasons]] = IMPOSSIBLE
     return status, reasons
+
+
+def _start_modes(
+    model: Model,
+    p: FloatArray,
+    x: FloatArray,
+    drives: Sequence[Sequence[InputSignal]],
+    kind: IntArray,
+    begin: float,
+    status: IntArray,
+    reasons: list[str],
+) -> FloatArray:
+    """Modes [nm, b] at `begin` in s of rigid contacts; marks starts in which bodies overlap.
+
+    Those of sprung contacts are found in the threads: their modes stay zero.
+    """
+    m = np.zeros((len(p), max(1, len(model.mode_names))))
+    if not model.contacts[:, 2].any():
+        return np.ascontiguousarray(m.T)
+    watch, tables = new_watch(model, x.shape[1], p[0]), [stack(signals) for signals in drives]
+    for b in np.flatnonzero(status == DONE):
+        table = delayed(tables[kind[b]], delays_of(model, p[b]))
+        u = values_at(table, np.array([begin]))[0]
+        model.module.initial_modes(begin, x[b], u, p[b], watch.m)
+        try:
+            refuse_start(model, x[b], u, p[b], watch)
+        except InputError as error:
+            status[b], reasons[b] = IMPOSSIBLE, str(error)
+        m[b] = watch.m
+    return np.ascontiguousarray(m.T)
 
 
 def _reported(model: Model, p: FloatArray, ended: Runs, reasons: list[str]) -> GpuStates:

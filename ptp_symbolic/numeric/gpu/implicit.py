@@ -3,7 +3,8 @@
 The scheme of `simulate(method="fixed_step")`: a step keeps its modes when they still hold at its
 end: then it is the two-stage Rosenbrock method of Verwer et al. (SIAM J. Sci. Comput. 20, 1999).
 Otherwise it is repeated as a linearly implicit Euler step whose modes are unknowns of a
-complementarity problem (principal pivoting: Murty, Opsearch 11, 1974).
+complementarity problem (principal pivoting: Murty, Opsearch 11, 1974). Rigid faces strike at the
+ends of steps: see `rigid`.
 """
 
 import math
@@ -12,7 +13,8 @@ from typing import Any, NamedTuple
 from numba.extending import register_jitable
 
 from ptp_symbolic.numeric.gpu.drives import evaluate, next_stop
-from ptp_symbolic.numeric.gpu.machine import is_finite, is_outside
+from ptp_symbolic.numeric.gpu.machine import copy, is_finite, is_outside, rates_of
+from ptp_symbolic.numeric.gpu.rigid import land
 from ptp_symbolic.numeric.simulation.kernels.records import (
     DIVERGED,
     DONE,
@@ -40,9 +42,11 @@ class StepWork(NamedTuple):
 
 
 @register_jitable
-def integrate_in_steps(machine, signals, work, begin, end, step):
+def integrate_in_steps(machine, signals, work, begin, end, step, begin_modes, find_modes, land):
     """Step machine.x [n] from `begin` to `end` in s, in equal steps of at most `step` s between the
     jumps of the inputs. Returns status, the time reached in s, and the number of steps.
+
+    `begin_modes`, `find_modes` and `land` are the rules of sprung contacts, or of rigid ones.
     """
     t, steps = begin, 0
     for i in range(len(machine.x)):
@@ -52,7 +56,7 @@ def integrate_in_steps(machine, signals, work, begin, end, step):
         return OUTSIDE, t, steps
     while t < end:
         evaluate(t, 1, signals, machine.u)
-        if steps == 0 and not choose_start_modes(machine, work, t):
+        if steps == 0 and not begin_modes(machine, work, t):
             return UNDECIDED, t, steps
         start, stop = t, next_stop(t, end, signals)
         count = max(1, math.ceil((stop - start) / step - 1e-9))
@@ -60,7 +64,7 @@ def integrate_in_steps(machine, signals, work, begin, end, step):
         for index in range(count):
             after = stop if index + 1 == count else start + (index + 1) * h
             evaluate(after, -1, signals, machine.u_end)
-            status = take_step(machine, work, start + index * h, after)
+            status = take_step(machine, work, start + index * h, after, find_modes, land)
             if status != DONE:
                 return status, start + index * h, steps
             steps += 1
@@ -69,22 +73,17 @@ def integrate_in_steps(machine, signals, work, begin, end, step):
 
 
 @register_jitable
-def take_step(machine, work, t, t_end):
+def take_step(machine, work, t, t_end, find_modes, land):
     """One step of machine.x [n] from t to t_end in s, with the inputs at both ends; its status."""
-    h = t_end - t
-    fixed_mode_step(machine, work, t, h)
-    if machine.frictions + machine.contacts > 0:
-        machine.guard_values(t + h, machine.end, machine.u_end, machine.p, machine.m, machine.g)
-        copy(machine.m, machine.m_before)
-        allow_all(work.refused)
-        if correct_a_mode(machine, work, machine.end):
-            copy(machine.m_before, machine.m)
-            if not mode_finding_step(machine, work, t, h):
-                return UNDECIDED
+    fixed_mode_step(machine, work, t, t_end - t)
+    if not find_modes(machine, work, t, t_end - t):
+        return UNDECIDED
     if not is_finite(machine.end):
         return DIVERGED
     if is_outside(machine, machine.end):
         return OUTSIDE
+    if not land(machine, work, t_end):
+        return UNDECIDED
     for a in range(len(machine.x)):
         machine.x[a] = machine.end[a] if abs(machine.end[a]) > SMALLEST else 0.0
     copy(machine.u_end, machine.u)
@@ -92,10 +91,41 @@ def take_step(machine, work, t, t_end):
 
 
 @register_jitable
-def copy(source, target):
-    """Copy a vector."""
-    for i in range(len(source)):
-        target[i] = source[i]
+def find_sprung_modes(machine, work, t, h):
+    """Repeat a step whose modes do not fit its end; False if none are found that do."""
+    if machine.frictions + machine.contacts == 0:
+        return True
+    machine.guard_values(t + h, machine.end, machine.u_end, machine.p, machine.m, machine.g)
+    copy(machine.m, machine.m_before)
+    allow_all(work.refused)
+    if not correct_a_mode(machine, work, machine.end):
+        return True
+    copy(machine.m_before, machine.m)
+    return mode_finding_step(machine, work, t, h)
+
+
+@register_jitable
+def keep_modes(machine, work, t, h):
+    """Rigid contacts change their modes at the ends of steps alone."""
+    return True
+
+
+@register_jitable
+def never_strike(machine, work, t):
+    """Sprung contacts have no impacts."""
+    return True
+
+
+@register_jitable
+def begin_rigid(machine, work, t):
+    """Find consistent modes of an initial state whose modes are known but for its impacts."""
+    return land(machine, work.k2, t, machine.x, machine.u)
+
+
+@register_jitable
+def land_rigid(machine, work, t):
+    """Strike and switch at the end of a step; False on chattering."""
+    return land(machine, work.k2, t, machine.end, machine.u_end)
 
 
 @register_jitable
@@ -155,6 +185,10 @@ def factor_step(machine, work, reach, t, u):
     machine.linearize(
         t, machine.x, u, machine.p, machine.m, work.by_state, work.by_input, none, none, none
     )
+    for c in range(machine.contacts):
+        if machine.pressed[c] == 1:
+            for j in range(n):
+                work.by_state[machine.contact_rates[3 * c], j] = 0.0
     for i in range(n):
         for j in range(n):
             a[i, j] = -reach * work.by_state[i, j]
@@ -181,12 +215,12 @@ def fixed_mode_step(machine, work, t, h):
     """Write the state after an order-2 Rosenbrock step in the present modes into machine.end."""
     n, x, end, k1, k2 = len(machine.x), machine.x, machine.end, work.k1, work.k2
     factor_step(machine, work, GAMMA * h, t, machine.u)
-    machine.derivative(t, x, machine.u, machine.p, machine.m, machine.prepared, k1)
+    rates_of(machine, t, x, machine.u, k1)
     rest(machine, k1)
     solve(work.matrix, work.order, k1)
     for a in range(n):
         end[a] = x[a] + h * k1[a]
-    machine.derivative(t + h, end, machine.u_end, machine.p, machine.m, machine.prepared, k2)
+    rates_of(machine, t + h, end, machine.u_end, k2)
     for a in range(n):
         k2[a] -= 2.0 * k1[a]
     rest(machine, k2)
@@ -205,7 +239,7 @@ def mode_finding_step(machine, work, t, h):
     allow_all(work.refused)
     for _ in range(MOST_SWEEPS):
         factor_step(machine, work, h, t + h, machine.u_end)
-        machine.derivative(t + h, x, machine.u_end, machine.p, m, machine.prepared, k)
+        rates_of(machine, t + h, x, machine.u_end, k)
         for a in range(len(x)):
             k[a] *= h
         for f in range(machine.frictions):

@@ -12,7 +12,16 @@ from numba.extending import register_jitable
 
 from ptp_symbolic.numeric.gpu.drives import Signals, begin_signals
 from ptp_symbolic.numeric.gpu.explicit import integrate_smooth
-from ptp_symbolic.numeric.gpu.implicit import StepWork, integrate_in_steps
+from ptp_symbolic.numeric.gpu.implicit import (
+    StepWork,
+    begin_rigid,
+    choose_start_modes,
+    find_sprung_modes,
+    integrate_in_steps,
+    keep_modes,
+    land_rigid,
+    never_strike,
+)
 from ptp_symbolic.numeric.gpu.machine import READY, Layout, Machine
 from ptp_symbolic.numeric.simulation.methods.runge_kutta import STAGES
 
@@ -24,8 +33,8 @@ def read_trajectory(i, runs, machine, signals, delays, prepare, domain):
         machine.x[a] = runs.x[a, i]
     for a in range(runs.p.shape[0]):
         machine.p[a] = runs.p[a, i]
-    for a in range(len(machine.m)):
-        machine.m[a] = 0.0
+    for a in range(runs.m.shape[0]):
+        machine.m[a] = runs.m[a, i]
     prepare(machine.p, machine.prepared)
     domain(machine.p, machine.bounds)
     begin_signals(signals, delays, machine.p)
@@ -49,6 +58,7 @@ def smooth_kernel(layout: Layout) -> Any:
     modes, guard_count, limits = layout.modes, layout.guards, layout.limits
     bounds, limited, delays = max(1, limits), layout.limited, layout.delays
     rates, zero_at_rest, stages = layout.friction_rates, layout.zero_at_rest, STAGES
+    contact_rates = layout.contact_rates
 
     @cuda.jit
     def run_smooth(runs, drives, begin, end, accuracy):
@@ -60,10 +70,12 @@ def smooth_kernel(layout: Layout) -> Any:
             derivative,
             guards,
             guards,
+            guards,
             0,
             0,
             rates,
             zero_at_rest,
+            contact_rates,
             limits,
             limited,
             x,
@@ -76,6 +88,9 @@ def smooth_kernel(layout: Layout) -> Any:
             local(modes, f),
             local(guard_count, f),
             local((bounds, 2), f),
+            local(1, int64),
+            local(1, int64),
+            local(1, f),
         )
         first = runs.kind[i] * nu
         signals = Signals(drives, first, local(nu, f), local(nu, int64), local(nu, int64))
@@ -99,6 +114,12 @@ def stepping_kernel(layout: Layout) -> Any:
     frictions, contacts, directions = layout.frictions, layout.contacts, 2 * layout.frictions + 1
     bounds, limited, delays = max(1, limits), layout.limited, layout.delays
     rates, zero_at_rest = layout.friction_rates, layout.zero_at_rest
+    contact_rates, touching = layout.contact_rates, max(1, contacts)
+    impacts = module.impacts if layout.rigid else guards
+    changes = touching * (n + 2) if layout.rigid else 1
+    begin_modes, find_modes, land = choose_start_modes, find_sprung_modes, never_strike
+    if layout.rigid:
+        begin_modes, find_modes, land = begin_rigid, keep_modes, land_rigid
 
     @cuda.jit
     def run_in_steps(runs, drives, begin, end, step):
@@ -110,10 +131,12 @@ def stepping_kernel(layout: Layout) -> Any:
             derivative,
             linearize,
             guards,
+            impacts,
             frictions,
             contacts,
             rates,
             zero_at_rest,
+            contact_rates,
             limits,
             limited,
             x,
@@ -126,7 +149,13 @@ def stepping_kernel(layout: Layout) -> Any:
             local(modes, f),
             local(guard_count, f),
             local((bounds, 2), f),
+            local(touching, int64),
+            local(touching, int64),
+            local(changes, f),
         )
+        for c in range(touching):
+            machine.pressed[c] = 0
+            machine.settling[c] = 0
         work = StepWork(
             local((n, n), f),
             local((n, nu), f),
@@ -139,7 +168,9 @@ def stepping_kernel(layout: Layout) -> Any:
         first = runs.kind[i] * nu
         signals = Signals(drives, first, local(nu, f), local(nu, int64), local(nu, int64))
         read_trajectory(i, runs, machine, signals, delays, prepare, domain)
-        status, reached, steps = integrate_in_steps(machine, signals, work, begin, end, step)
+        status, reached, steps = integrate_in_steps(
+            machine, signals, work, begin, end, step, begin_modes, find_modes, land
+        )
         write_trajectory(i, runs, x, status, reached, steps)
 
     return run_in_steps

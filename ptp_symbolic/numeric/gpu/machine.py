@@ -35,6 +35,8 @@ class Layout:
     guards: int
     friction_rates: tuple[int, ...]
     zero_at_rest: tuple[int, ...]
+    contact_rates: tuple[int, ...]
+    rigid: bool
     limited: tuple[int, ...]
     delays: tuple[int, ...]
 
@@ -56,6 +58,8 @@ class Layout:
             max(1, 3 * frictions + 4 * contacts),
             _whole(model.friction_rates) or (0,),
             _whole(model.zero_at_rest),
+            _whole(model.contacts.reshape(-1)) or (0, 0, 0),
+            bool(model.contacts[:, 2].any()),
             _whole(limited) or (0,),
             _whole(model.input_delays),
         )
@@ -66,12 +70,14 @@ def _whole(values: Any) -> tuple[int, ...]:
 
 
 class Runs(NamedTuple):
-    """All trajectories: states x [n, b] in and out, parameters p [np, b], the kind of drive [b];
-    status [b] in and out, time reached in s [b] and number of steps [b] out.
+    """All trajectories: states x [n, b] in and out, parameters p [np, b], modes m [nm, b] at the
+    start of rigid contacts, the kind of drive [b]; status [b] in and out, time reached in s [b] and
+    number of steps [b] out.
     """
 
     x: Any
     p: Any
+    m: Any
     kind: Any
     status: Any
     reached: Any
@@ -81,16 +87,19 @@ class Runs(NamedTuple):
 class Machine(NamedTuple):
     """The emitted functions, the indices of `Layout`, and arrays: state x, trial state `end` [n],
     inputs at the start and the end of a step u, u_end [nu], parameters p [np], what `prepare` makes
-    of them, modes m and m_before, guards g, bounds [limits, 2].
+    of them, modes m and m_before, guards g, bounds [limits, 2]; per contact whether it is pressed
+    onto a joint that sticks, and whether it settles without a bounce; what `impacts` writes.
     """
 
     derivative: Any
     linearize: Any
     guard_values: Any
+    impacts: Any
     frictions: Any
     contacts: Any
     friction_rates: Any
     zero_at_rest: Any
+    contact_rates: Any
     limits: Any
     limited: Any
     x: Any
@@ -103,6 +112,25 @@ class Machine(NamedTuple):
     m_before: Any
     g: Any
     bounds: Any
+    pressed: Any
+    settling: Any
+    changes: Any
+
+
+@register_jitable
+def copy(source, target):
+    """Copy a vector."""
+    for i in range(len(source)):
+        target[i] = source[i]
+
+
+@register_jitable
+def rates_of(machine, t, x, u, k):
+    """Write dx/dt into k [n]; a gear output pressed onto a sticking joint stays at rest."""
+    machine.derivative(t, x, u, machine.p, machine.m, machine.prepared, k)
+    for c in range(machine.contacts):
+        if machine.pressed[c] == 1:
+            k[machine.contact_rates[3 * c]] = 0.0
 
 
 @register_jitable
