@@ -8,6 +8,7 @@ import tomllib
 from collections.abc import Callable
 from pathlib import Path
 
+import numba
 import pytest
 
 from ptp_symbolic.cli import main
@@ -53,6 +54,9 @@ def test_every_block_works(
     page: Path, command: Callable, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
+    if page.stem == "gpu":
+        pytest.importorskip("numba_cuda", reason="numba-cuda is not installed: the extra gpu")
+        monkeypatch.setattr(numba.config, "ENABLE_CUDASIM", 1)
     reader = Reader(tmp_path, command)
     found = blocks(page.read_text(encoding="utf-8"))
     assert found, "a how-to page shows how"

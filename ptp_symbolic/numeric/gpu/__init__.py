@@ -1,0 +1,1 @@
+"""Many trajectories of one model on a GPU, one per thread."""
