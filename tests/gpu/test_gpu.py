@@ -12,8 +12,9 @@ from ptp_symbolic.api.machine import Machine
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.gpu.batch import IMPOSSIBLE, GpuStates, integrate_on_gpu, is_simulated
-from ptp_symbolic.numeric.simulation.kernels.records import DIVERGED, DONE
+from ptp_symbolic.numeric.simulation.kernels.records import DIVERGED, DONE, OUTSIDE
 from ptp_symbolic.numeric.simulation.signals.inputs import constant, parse_profile, table
+from ptp_symbolic.platform import EffectDeclaration, Platform
 from tests.effects.test_backlash_kinds import PUSHED, platform
 
 
@@ -101,6 +102,49 @@ def _some_fail() -> tuple[ptp.Machine, GpuStates]:
     x[3, 0] = np.nan
     x[4, 0] = 1e13
     return model, integrate_on_gpu(model, p, x, [[constant(3.0)]], None, (0.0, 0.01), step=1e-3)
+
+
+def test_delays_are_those_of_each_run() -> None:
+    effects = ("rigid_bodies", None), ("viscous_friction", "pan"), ("input_delay", "pan")
+    declared = tuple(EffectDeclaration(effect, axis, None) for effect, axis in effects)
+    model = Machine(
+        emission.emit(Platform("late", "Late", ("pan",), 9.81, declared, (), ())).module
+    )
+    J, b, torque, delay = 1e-3, 2e-3, 0.02, np.array([0.013, 0.0])
+    p = np.repeat(model.parameter_vector({"J_pan": J, "b_pan": b})[None], 2, 0)
+    p[:, model.parameter_names.index("t_delay_pan")] = delay
+    drive = [parse_profile(f"step:{torque}@0.05", 0.3)]
+    for method in ("runge_kutta", "fixed_step"):
+        found = integrate_on_gpu(
+            model, p, np.zeros((2, 2)), [drive], None, (0.0, 0.3), method, 1e-3, 1e-9, 1e-10
+        )
+        driven = 0.3 - 0.05 - delay
+        speed = torque / b * (1.0 - np.exp(-b * driven / J))
+        assert found.x[:, 1] == pytest.approx(speed, rel=1e-7 if method == "runge_kutta" else 1e-6)
+
+
+def test_a_run_that_leaves_its_domain_says_which_limit() -> None:
+    model = ptp.load("tilt_drive")
+    p, x = _rows(model, 3)
+    x[1:, 0] = 0.79, 0.81  # rad; the stroke ends at 0.797
+    kinds = [[constant(0.0)], [constant(-24.0)]]
+    found = integrate_on_gpu(model, p, x, kinds, np.array([0, 1, 0]), (0.0, 1.0), step=0.01)
+    assert found.status.tolist() == [DONE, OUTSIDE, OUTSIDE]
+    assert "past the stroke end" in found.reasons[1] and np.isnan(found.x[1]).all()
+    initial = {"theta_tilt": 0.79}
+    with pytest.raises(InputError, match="past the stroke end") as single:
+        ptp.simulate(
+            model,
+            [0.0, 1.0],
+            {"u_tilt": kinds[1][0]},
+            None,
+            initial,
+            method="fixed_step",
+            step=0.01,
+        )
+    stopped, alone = (float(said.split()[2]) for said in (found.reasons[1], str(single.value)))
+    assert alone == pytest.approx(stopped, abs=0.01)  # a step
+    assert found.reasons[2].startswith("Stopped at 0 s with theta_tilt = 0.81 rad")
 
 
 def test_runs_that_are_impossible_say_so_and_the_others_finish() -> None:

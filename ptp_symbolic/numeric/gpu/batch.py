@@ -83,6 +83,7 @@ def integrate_on_gpu(
     count = len(p)
     kind = np.zeros(count, np.int64) if drive is None else np.asarray(drive, np.int64)
     _refuse_shapes(model, p, x, drives, kind)
+    p, x = (np.ascontiguousarray(values, np.float64) for values in (p, x))
     begin, end = map(float, span)
     for name, value in (("Duration", end - begin), ("Step", step)):
         if not 0.0 < value < np.inf:
@@ -201,8 +202,10 @@ def _impossible(model: Model, p: FloatArray, x: FloatArray) -> tuple[IntArray, l
         name = model.state_names[j]
         said = f"State '{name}' starts at {x[b, j]} {model.units[name]}; give a finite number."
         reasons[b] = reasons[b] or said
-    if model.module.REQUIREMENTS:
-        for row in [b for b, why in enumerate(reasons) if not why]:
+    margin, margins = np.zeros(len(model.module.REQUIREMENTS)), model.module.margins
+    for row in range(len(p) if len(margin) else 0):
+        margins(p[row], margin)
+        if not reasons[row] and not margin.min() > 0.0:
             try:
                 model.refuse_impossible(p[row])
             except InputError as error:

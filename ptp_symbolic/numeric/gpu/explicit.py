@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from numba.extending import register_jitable
 
 from ptp_symbolic.numeric.gpu.drives import evaluate, next_stop
-from ptp_symbolic.numeric.gpu.machine import is_finite, is_outside
+from ptp_symbolic.numeric.gpu.machine import copy, is_finite, is_outside
 from ptp_symbolic.numeric.simulation.kernels.records import (
     DIVERGED,
     DONE,
@@ -66,7 +66,8 @@ def integrate_smooth(machine, signals, k, begin, end, accuracy):
             factor = max(LEAST, SAFETY * error ** (-1.0 / ORDER)) if error < 1e30 else LEAST
         if error <= 1.0:
             if is_outside(machine, machine.end):
-                return OUTSIDE, t, steps
+                copy(machine.end, machine.x)
+                return OUTSIDE, t + length, steps
             t = stop if t + h >= stop else t + length
             accept(machine, k)
             h = max(h, factor * length) if length < h else factor * length

@@ -81,6 +81,7 @@ def take_step(machine, work, t, t_end, find_modes, land):
     if not is_finite(machine.end):
         return DIVERGED
     if is_outside(machine, machine.end):
+        copy(machine.end, machine.x)
         return OUTSIDE
     if not land(machine, work, t_end):
         return UNDECIDED
