@@ -94,6 +94,7 @@ def test_changes_of_parameters_and_starts_are_not_visible(name: str) -> None:
     assert measure.largest(change) < 0.1 * before
 
 
+@pytest.mark.long
 def test_at_the_threshold_response_and_torque_are_as_defined() -> None:
     measure = yardstick("direct_drive", QUICK)
     scene = Scene(measure.machine, measure.values, "pan", 1.0, 1.0, np.random.default_rng(0))

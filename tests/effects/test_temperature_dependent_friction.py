@@ -107,6 +107,7 @@ def write_logs(folder: Path) -> list[Path]:
     return paths
 
 
+@pytest.mark.long
 def test_both_falls_are_found_with_the_friction_that_they_act_on(tmp_path: Path) -> None:
     """Begun without any, and a factor of two to three off in the rest."""
     path = tmp_path / "bench.toml"

@@ -201,6 +201,7 @@ def test_an_interval_of_a_linear_law_is_that_of_student() -> None:
         )
 
 
+@pytest.mark.long
 def test_a_law_is_given_up_at_one_chance_in_a_hundred_not_at_five() -> None:
     """Points that Coulomb friction alone makes as seldom as one in thirty are no evidence yet."""
     doubtful = 0

@@ -55,6 +55,7 @@ def test_seven_truths_lie_within_their_intervals(found: Fit) -> None:
     assert all(e.identified and not e.at_bound for e in told.values())
 
 
+@pytest.mark.long
 def test_intervals_are_as_wide_as_values_scatter_from_one_noise_to_the_next() -> None:
     """Over 16 seeds, seven parameters each: the truth lies within 95 % intervals as often as it
     should for 112 of them (at least 95 are expected in 99.9 % of cases where 95 % is right, as the

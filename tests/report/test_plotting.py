@@ -9,6 +9,7 @@ POINTS = "rate [rad/s],torque [N m]\n" + "".join(
 )
 
 
+@pytest.mark.long
 def test_settings_of_matplotlib_in_the_working_folder_change_nothing(tmp_path: Path) -> None:
     """Neither valid ones, nor such that Matplotlib cannot even read."""
     pictures = []
