@@ -4,6 +4,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 POINTS = "rate [rad/s],torque [N m]\n" + "".join(
     f"{s * w},{s * (0.3 + 0.05 * w + 0.001 * (-1) ** w)}\n" for s in (1, -1) for w in range(1, 8)
 )
