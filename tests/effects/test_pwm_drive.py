@@ -179,6 +179,7 @@ def test_the_kind_is_declared_in_the_platform(tmp_path: Path) -> None:
         emission.emit(read_platform(path))
 
 
+@pytest.mark.long
 def test_a_carrier_that_starts_with_a_sample_takes_the_new_command() -> None:
     """The LM629 derives both from one clock: every fourth carrier period starts with a sample."""
     base = read_platform("thesis-pan-servo")

@@ -84,6 +84,7 @@ def test_predicted_deviations_are_those_of_many_fits(tmp_path: Path) -> None:
         assert spread == pytest.approx(expected[name], rel=0.2), name
 
 
+@pytest.mark.long
 def test_separation_is_what_free_parameters_cannot_follow(tmp_path: Path) -> None:
     """A table with a small constant torque against one without: the response to the torque,
     projected off those to inertia, damping, stiffness and start, in closed form.

@@ -15,6 +15,7 @@ PLATFORM = Path(__file__).parents[1] / "platforms" / "fieldlog_pan.toml"
 HALF_GAP = np.radians(1.49) / 2.0
 
 
+@pytest.mark.long
 def test_the_place_in_a_gap_is_that_of_the_twist_a_gear_error_included() -> None:
     """The gear leads the joint by its angle and its transmission error, g sin(angle) and so on; at
     place 1 it is half the gap, but for the change of the error over the gap. Tangents are those of

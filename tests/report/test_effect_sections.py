@@ -55,6 +55,7 @@ def test_every_effect_has_its_title_its_reference_and_a_word_on_its_power(effect
         assert "only dissipates" in text
 
 
+@pytest.mark.long
 def test_all_sections_compile_without_a_warning(tmp_path: Path) -> None:
     if shutil.which("pdflatex") is None:
         pytest.skip("pdflatex is not installed")
