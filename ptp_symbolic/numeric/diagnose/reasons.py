@@ -13,10 +13,10 @@ from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.diagnose.verdict import Verdict
 from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, FALSE_ALARM, MOST
 
-SHARE = "share of the sum of squares on blocks left out that it takes away"
+SHARE = "share by which the sum of squares on blocks left out falls"
 CERTAIN = "lower end of the 95 % interval of that share"
 CHANCE = "chance of finding it where it is not"
-VALIDATED = "share of the sum of squares of the validation runs that is taken away"
+VALIDATED = "share by which the sum of squares of the validation runs falls"
 TRAINING = "residual of {signal} on the training runs, over the largest that noise may leave"
 VALIDATION = "residual of {signal} on the validation runs, over the largest that noise may leave"
 ALIKE = "other effects that do as well in its place"

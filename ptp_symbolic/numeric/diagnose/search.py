@@ -47,7 +47,7 @@ from ptp_symbolic.numeric.identify.work import Allowance
 
 
 def search(task: Task, *, brief: bool = False) -> Search:
-    """Find the set of candidates that the training runs ask for; once its allowance is over, with
+    """Find the set of candidates that the training runs support; once its allowance is over, with
     what has been tried by then. A `brief` search ends with what is found soon: enough to tell
     whether any set leaves as little as a model that leaves noise alone.
     """

@@ -11,11 +11,12 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.errors import InputError, out_of_bounds
+from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.gpu.drives import Drives, drives_of
 from ptp_symbolic.numeric.gpu.explicit import Accuracy
 from ptp_symbolic.numeric.gpu.machine import Layout, Runs
-from ptp_symbolic.numeric.runtime.model import BOUND_SLACK, Model
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.batch import IMPOSSIBLE, impossible
 from ptp_symbolic.numeric.simulation.buffers import new_watch
 from ptp_symbolic.numeric.simulation.integration import (
     EXPLICIT,
@@ -36,7 +37,6 @@ from ptp_symbolic.numeric.simulation.signals.inputs import (
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-IMPOSSIBLE = -1  # status of a trajectory whose values no machine can have
 THREADS = 128  # a block: four warps, so that registers never hold one back
 LARGEST_STEP = 1.0  # s, of smooth models
 MOST_STEPS = 1_000_000  # of a trajectory: a GPU that shows a desktop stops kernels of seconds
@@ -97,7 +97,7 @@ def integrate_on_gpu(
     cuda = cuda_library()
     from ptp_symbolic.numeric.gpu.kernels import smooth_kernel, stepping_kernel
 
-    status, reasons = _impossible(model, p, x)
+    status, reasons = impossible(model, p, x)
     runs = Runs(
         np.ascontiguousarray(x.T, np.float64),
         np.ascontiguousarray(p.T, np.float64),
@@ -186,32 +186,6 @@ def _refuse_shapes(
                 f"{len(signals)} signals; give {len(model.input_names)}:"
                 f" {', '.join(model.input_names)}."
             )
-
-
-def _impossible(model: Model, p: FloatArray, x: FloatArray) -> tuple[IntArray, list[str]]:
-    """Status [b], IMPOSSIBLE where values are no machine's, else DONE, and why, in words [b]."""
-    status, reasons = np.full(len(p), DONE), [""] * len(p)
-    lower = np.array([each.lower for each in model.parameters])
-    upper = np.array([each.upper for each in model.parameters])
-    inside = (p >= lower - BOUND_SLACK * abs(lower)) & (p <= upper + BOUND_SLACK * abs(upper))
-    for b in np.flatnonzero(~(inside & np.isfinite(p)).all(axis=1)):
-        j = int(np.flatnonzero(~(inside[b] & np.isfinite(p[b])))[0])
-        each = model.parameters[j]
-        reasons[b] = str(out_of_bounds(each.name, p[b, j], each.unit, each.lower, each.upper))
-    for b, j in zip(*np.nonzero(~np.isfinite(x)), strict=True):
-        name = model.state_names[j]
-        said = f"State '{name}' starts at {x[b, j]} {model.units[name]}; give a finite number."
-        reasons[b] = reasons[b] or said
-    margin, margins = np.zeros(len(model.module.REQUIREMENTS)), model.module.margins
-    for row in range(len(p) if len(margin) else 0):
-        margins(p[row], margin)
-        if not reasons[row] and not margin.min() > 0.0:
-            try:
-                model.refuse_impossible(p[row])
-            except InputError as error:
-                reasons[row] = str(error)
-    status[[bool(why) for why in reasons]] = IMPOSSIBLE
-    return status, reasons
 
 
 def _start_modes(

@@ -21,7 +21,7 @@ from ptp_symbolic.numeric.simulation.methods.runge_kutta import ERROR, ORDER, ST
 SHORTEST = 1e-11  # s
 SAFETY, LEAST, MOST = 0.9, 0.2, 5.0  # factors by which a step length changes
 FIRST = 1e-4  # s; the longest first step
-BEFORE_STOP = 2.0  # of a step length: what is left to a stop is then cut in two
+BEFORE_STOP = 2.0  # step lengths: a shorter rest before a stop is cut in two
 
 
 class Accuracy(NamedTuple):

@@ -30,6 +30,7 @@ from ptp_symbolic.numeric.simulation.signals.inputs import (
 )
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 
 IMPOSSIBLE = -1  # status of a trajectory whose values no machine can have
 PORTIONS = 8  # of a chunk per thread, so that threads end together
@@ -77,12 +78,10 @@ def integrate_batch(
     """
     count, (k, n) = len(p), (len(problem.times), x.shape[1])
     found = BatchStates(
-        np.full(count, DONE),
-        [""] * count,
+        *impossible(problem.model, p, x),
         np.zeros(count, np.int64),
         np.full((count, k, n), np.nan),
     )
-    _note_impossible(problem.model, p, x, found)
     possible = np.flatnonzero(found.status == DONE)
     tables = [stack(signals) for signals in problem.drives]
     stops = [table.with_stops(problem.times[[0, -1]]) for table in tables]
@@ -170,32 +169,30 @@ def _in_threads(one: Callable[[int], None], rows: NDArray[np.int64], threads: in
             pass
 
 
-def _note_impossible(model: Model, p: FloatArray, x: FloatArray, to: BatchStates) -> None:
-    """Mark the trajectories whose parameters [b, np] or initial states [b, n] are impossible."""
+def impossible(model: Model, p: FloatArray, x: FloatArray) -> tuple[IntArray, list[str]]:
+    """Status [b], IMPOSSIBLE where values are no machine's, else DONE, and why, in words [b]."""
+    status, reasons = np.full(len(p), DONE), [""] * len(p)
     lower = np.array([each.lower for each in model.parameters])
     upper = np.array([each.upper for each in model.parameters])
-    below, above = lower - BOUND_SLACK * abs(lower), upper + BOUND_SLACK * abs(upper)
-    wrong = ~((p >= below) & (p <= above) & np.isfinite(p))
-    for b in np.flatnonzero(wrong.any(axis=1)):
-        each = model.parameters[int(np.flatnonzero(wrong[b])[0])]
-        value = p[b, model.parameter_names.index(each.name)]
-        _mark(to, b, out_of_bounds(each.name, value, each.unit, each.lower, each.upper))
+    inside = (p >= lower - BOUND_SLACK * abs(lower)) & (p <= upper + BOUND_SLACK * abs(upper))
+    for b in np.flatnonzero(~(inside & np.isfinite(p)).all(axis=1)):
+        j = int(np.flatnonzero(~(inside[b] & np.isfinite(p[b])))[0])
+        each = model.parameters[j]
+        reasons[b] = str(out_of_bounds(each.name, p[b, j], each.unit, each.lower, each.upper))
     for b, j in zip(*np.nonzero(~np.isfinite(x)), strict=True):
         name = model.state_names[j]
         said = f"State '{name}' starts at {x[b, j]} {model.units[name]}; give a finite number."
-        _mark(to, b, InputError(said))
-    if not model.module.REQUIREMENTS:
-        return
-    for b in np.flatnonzero(to.status == DONE):
-        try:
-            model.refuse_impossible(p[b])
-        except InputError as error:
-            _mark(to, b, error)
-
-
-def _mark(to: BatchStates, b: int | np.signedinteger, why: InputError) -> None:
-    if to.status[b] == DONE:
-        to.status[b], to.reasons[b] = IMPOSSIBLE, str(why)
+        reasons[b] = reasons[b] or said
+    margin, margins = np.zeros(len(model.module.REQUIREMENTS)), model.module.margins
+    for row in range(len(p) if len(margin) else 0):
+        margins(p[row], margin)
+        if not reasons[row] and not margin.min() > 0.0:
+            try:
+                model.refuse_impossible(p[row])
+            except InputError as error:
+                reasons[row] = str(error)
+    status[[bool(why) for why in reasons]] = IMPOSSIBLE
+    return status, reasons
 
 
 _OUTPUTS = types.FunctionType(types.void(types.float64, *[VECTOR] * 4))

@@ -288,7 +288,7 @@ def _plan(table, waves, runs, all_lanes):
             planned = all_lanes.plan[lane]
             planned = planned if planned < runs.limits[1] else runs.limits[1]
             all_lanes.ends[lane] = planned >= left
-            nearly = planned if 2.0 * planned <= left else 0.5 * left  # no tiny step is left over
+            nearly = planned if 2.0 * planned <= left else 0.5 * left  # no tiny last step
             h[lane] = left if planned >= left else nearly
             runs.steps[all_lanes.who[lane]] += 1
             _find_pieces(lane, table, waves, all_lanes)

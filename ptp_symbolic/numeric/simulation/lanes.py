@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import DOP853
 
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.integration import EXPLICIT, Accuracy, default_method
@@ -24,12 +23,11 @@ from ptp_symbolic.numeric.simulation.lane_runner import (
     DENSE,
     ERROR_3,
     ERROR_5,
-    EXTRA,
     NEW,
-    STAGES,
     Lanes,
     run_lanes,
 )
+from ptp_symbolic.numeric.simulation.methods import dormand_prince
 from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
 
 FloatArray = NDArray[np.float64]
@@ -68,13 +66,13 @@ def tableau() -> tuple[FloatArray, IntArray, IntArray, FloatArray]:
     the nodes [16].
     """
     rows = np.zeros((22, ALL))
-    rows[:STAGES, :STAGES] = DOP853.A
-    rows[NEW, :STAGES] = DOP853.B
-    rows[EXTRA:ALL] = DOP853.A_EXTRA
-    rows[ERROR_5, : STAGES + 1], rows[ERROR_3, : STAGES + 1] = DOP853.E5, DOP853.E3
-    rows[DENSE:] = DOP853.D
-    nodes = np.concatenate([DOP853.C, [1.0], DOP853.C_EXTRA])
-    return *_blocks(rows), nodes
+    rows[:ALL] = dormand_prince.A
+    rows[ERROR_5, : NEW + 1], rows[ERROR_3, : NEW + 1] = (
+        dormand_prince.ERROR_5,
+        dormand_prince.ERROR_3,
+    )
+    rows[DENSE:] = dormand_prince.INTERPOLANT
+    return *_blocks(rows), dormand_prince.C
 
 
 def _aligned_zeros(shape: int | tuple[int, ...], kind: Any = np.float64) -> NDArray[Any]:

@@ -89,7 +89,7 @@ def motion(
 def _divided(
     lines: Sequence[Line], vectors: Vectors
 ) -> tuple[Part, Part, dict[str, tuple[Line, ...]]]:
-    """The parts `constants` and `mass_and_forces` of `lines`, and what is left, by array."""
+    """The parts `constants` and `mass_and_forces` of `lines`, and the other lines, by array."""
     once, each = dynamics.prepared(lines, vectors.p)
     entries = {a: [line for line in each if line[0].startswith(f"{a}[")] for a in DOCS}
     needs = {a: {name for name, _ in needed(each, own)} for a, own in entries.items()}
