@@ -18,12 +18,6 @@ from ptp_symbolic.api.simulation import STATES
 from ptp_symbolic.api.values import parameter_values, state_vector
 from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.simulation import lanes
-from ptp_symbolic.numeric.simulation.batch import (
-    IMPOSSIBLE,
-    BatchProblem,
-    integrate_batch,
-    outputs_along,
-)
 from ptp_symbolic.numeric.simulation.integration import METHODS, checked_accuracy
 from ptp_symbolic.numeric.simulation.kernels.records import (
     CHATTERING,
@@ -34,6 +28,12 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     STIFF,
     TOO_FAST,
     UNDECIDED,
+)
+from ptp_symbolic.numeric.simulation.lanes import (
+    IMPOSSIBLE,
+    BatchProblem,
+    integrate_batch,
+    outputs_along,
 )
 from ptp_symbolic.numeric.simulation.run import chosen_method, output_times
 from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, constant

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.api.run import ENERGIES, Run
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.data.calibration import raw_numbers
+from ptp_symbolic.numeric.data.log import raw_numbers
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform, SignalDeclaration
 

@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from ptp_symbolic.numeric.black_box.comparison import black_box
-from ptp_symbolic.numeric.black_box.free_motion import FreeRuns
+from ptp_symbolic.numeric.black_box import FreeRuns, black_box
 from ptp_symbolic.numeric.data import Log
 from ptp_symbolic.numeric.diagnose.findings import Search
 from ptp_symbolic.numeric.diagnose.trial import Task, tolerance_for

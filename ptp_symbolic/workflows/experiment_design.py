@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.diagnose.visibility import SEEN
-from ptp_symbolic.numeric.experiment.criteria import Worth, least_separation, precision
 from ptp_symbolic.numeric.experiment.machine import (
     Conditions,
     Played,
@@ -20,6 +19,9 @@ from ptp_symbolic.numeric.experiment.machine import (
     refuse_rest_outside,
 )
 from ptp_symbolic.numeric.experiment.prediction import (
+    Worth,
+    least_separation,
+    precision,
     predicted_curves,
     predicted_pairs,
     predicted_spreads,

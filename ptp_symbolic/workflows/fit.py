@@ -7,15 +7,14 @@ from typing import Any
 
 from ptp_symbolic.models import variants
 from ptp_symbolic.numeric.data import log_files, read_logs
-from ptp_symbolic.numeric.diagnose.curves import curves_of
 from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
-from ptp_symbolic.numeric.diagnose.errors import error_of
+from ptp_symbolic.numeric.diagnose.errors import curves_of, error_of
 from ptp_symbolic.numeric.diagnose.floor import floor_of
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
+from ptp_symbolic.numeric.diagnose.preparation import turned_inputs
 from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.summary import fit_table
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, tolerance_for
-from ptp_symbolic.numeric.diagnose.turned_inputs import turned_inputs
 from ptp_symbolic.numeric.identify.fit import fit_parameters
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.numeric.identify.replays import estimable

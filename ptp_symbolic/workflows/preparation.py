@@ -10,8 +10,7 @@ from ptp_symbolic.models import emission, variants
 from ptp_symbolic.models.declared import free_parameters, known_values, refuse_unknown_signals
 from ptp_symbolic.numeric.data import Log, refuse_motionless, refuse_wrapped_angles, remarks
 from ptp_symbolic.numeric.diagnose.preparation import task_of
-from ptp_symbolic.numeric.diagnose.side_by_side import usable_cores
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, usable_cores
 from ptp_symbolic.numeric.identify.constants import MATERIAL
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.numeric.identify.work import Allowance

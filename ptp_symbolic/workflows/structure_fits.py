@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models.structures import Rebuilt
 from ptp_symbolic.numeric.data import Log
-from ptp_symbolic.numeric.diagnose.side_by_side import side_by_side
 from ptp_symbolic.numeric.diagnose.structures import (
     Begun,
     FittedStructure,
@@ -17,6 +16,7 @@ from ptp_symbolic.numeric.diagnose.structures import (
     is_told,
     misfit,
 )
+from ptp_symbolic.numeric.diagnose.trial import side_by_side
 from ptp_symbolic.numeric.identify.work import Allowance
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.workflows.preparation import model_of, task_for

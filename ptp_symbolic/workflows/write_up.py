@@ -8,13 +8,10 @@ import numpy as np
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.diagnose.confirm import at_bound
-from ptp_symbolic.numeric.diagnose.curves import curves_of
+from ptp_symbolic.numeric.diagnose.errors import curves_of
 from ptp_symbolic.numeric.diagnose.floor import Floor
 from ptp_symbolic.numeric.diagnose.hints import further_hints
-from ptp_symbolic.numeric.diagnose.reasons import reasons
-from ptp_symbolic.numeric.diagnose.remainder import hints, remainder
-from ptp_symbolic.numeric.diagnose.residual_tests import residual_tests
-from ptp_symbolic.numeric.diagnose.sizes import sizes_of
+from ptp_symbolic.numeric.diagnose.remainder import hints, remainder, residual_tests
 from ptp_symbolic.numeric.diagnose.summary import (
     added_effects,
     error_table,
@@ -23,8 +20,10 @@ from ptp_symbolic.numeric.diagnose.summary import (
     headline,
     ranking,
     repeatability_table,
+    sizes_of,
 )
 from ptp_symbolic.numeric.diagnose.trial import Trial
+from ptp_symbolic.numeric.diagnose.verdict import reasons
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.numeric.identify.replays import estimable
 from ptp_symbolic.platform import Platform, platform_text

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.models import emission
-from ptp_symbolic.numeric.black_box.free_motion import FreeRuns, free_error, simulated
+from ptp_symbolic.numeric.black_box import FreeRuns, free_error, simulated
 from ptp_symbolic.numeric.data import Log
 from ptp_symbolic.numeric.identify.evaluate import Tolerance
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.black_box.comparison import compared, learn
-from ptp_symbolic.numeric.black_box.learners import AxisRows, folds_of
+from ptp_symbolic.numeric.black_box import AxisRows, compared, folds_of, learn
 from ptp_symbolic.workflows.diagnosis import diagnose_platform
 
 pytest.importorskip("sklearn")

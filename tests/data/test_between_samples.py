@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.data.continuity import jumps
-from ptp_symbolic.numeric.data.latency import Samples
+from ptp_symbolic.numeric.data.latency import Samples, jumps
 
 PERIOD = 0.01
 COUNT = 2.0 * np.pi / 4096

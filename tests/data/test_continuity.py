@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.data.continuity import jumps, parted, pauses, unwrapped
+from ptp_symbolic.numeric.data.latency import jumps, parted, pauses, unwrapped
 from ptp_symbolic.platform import SignalDeclaration
 
 PERIOD = 0.01

@@ -19,7 +19,8 @@ from scipy.io import savemat
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.data import read_log
 from ptp_symbolic.numeric.data.formats import read_table
-from ptp_symbolic.numeric.files import child, matlab, outside
+from ptp_symbolic.numeric.files import child, matlab
+from ptp_symbolic.numeric.files import content as file_content
 from ptp_symbolic.numeric.files.tables import excel_text, parquet_parts, tdms_parts
 from ptp_symbolic.platform import Platform
 from tests.data.files_of_formats import (
@@ -103,7 +104,7 @@ def test_damaged_texts(tmp_path: Path) -> None:
 def test_damaged_files_of_libraries(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for library in ("h5py", "pyarrow.parquet", "nptdms", "openpyxl", "rosbags.highlevel", "mcap"):
         pytest.importorskip(library)
-    monkeypatch.setattr(outside, "_run", in_a_fork)
+    monkeypatch.setattr(file_content, "_run", in_a_fork)
     monkeypatch.setattr(child, "ROOM", OF_FORKS)
     topics, columns = bench(tmp_path, "volt/data", "angle/data"), bench(tmp_path)
     read = 0
@@ -136,7 +137,7 @@ def test_a_reader_that_dies_or_does_not_end_is_said(
 ) -> None:
     path = tmp_path / "run.mat"
     savemat(path, COLUMNS)
-    run = outside._run
+    run = file_content._run
     for code, words in (
         ("import os, signal; os.kill(os.getpid(), signal.SIGKILL)", r"ended the process .*code -9"),
         ("import time; time.sleep(60)", "did not end"),
@@ -144,7 +145,7 @@ def test_a_reader_that_dies_or_does_not_end_is_said(
     ):
         command = [sys.executable, "-c", code]
         with monkeypatch.context() as patched:
-            patched.setattr(outside, "_run", lambda _, file, __, c=command: run(c, file, 1.0))
+            patched.setattr(file_content, "_run", lambda _, file, __, c=command: run(c, file, 1.0))
             with pytest.raises(InputError, match=rf"run\.mat: is damaged: .*{words}"):
                 read_log(path, bench(tmp_path))
 

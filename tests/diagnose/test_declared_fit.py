@@ -11,11 +11,10 @@ from ptp_symbolic.numeric.diagnose.declared_fit import (
     better_over_same_runs,
     over_whole_runs,
 )
-from ptp_symbolic.numeric.diagnose.findings import Search
+from ptp_symbolic.numeric.diagnose.findings import Search, Tried
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.trial import fitted
-from ptp_symbolic.numeric.diagnose.tried import Tried
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.diagnosis import diagnose_platform
 from ptp_symbolic.workflows.fit import fit_platform

@@ -7,15 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose import fewer_samples
-from ptp_symbolic.numeric.diagnose.fewer_samples import (
+from ptp_symbolic.numeric.diagnose import left_over
+from ptp_symbolic.numeric.diagnose.floor import floor_of
+from ptp_symbolic.numeric.diagnose.left_over import (
+    carried_noise,
     fitted_to_every_sample,
     is_thinned,
     with_every_residual,
     with_fewer_samples,
 )
-from ptp_symbolic.numeric.diagnose.floor import floor_of
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted
 from ptp_symbolic.numeric.identify.run import Run
 from tests.diagnose.test_refits import FREE
@@ -40,7 +40,7 @@ def task() -> Iterator[Task]:
     runs = (coarse, second)
     none: tuple[tuple[Run, ...], ...] = ()
     with ThreadPoolExecutor(2) as executor, pytest.MonkeyPatch.context() as patched:
-        patched.setattr(fewer_samples, "SEARCH_PERIOD", 0.02)
+        patched.setattr(left_over, "SEARCH_PERIOD", 0.02)
         yield with_fewer_samples(
             Task(
                 MODEL,

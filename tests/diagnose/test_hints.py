@@ -19,8 +19,8 @@ from ptp_symbolic.numeric.diagnose.hints import (
     lost_motion,
     resonance,
 )
-from ptp_symbolic.numeric.diagnose.one_change import change_of
 from ptp_symbolic.numeric.diagnose.proposals import propose
+from ptp_symbolic.numeric.diagnose.remainder import change_of
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.preparation import model_of, task_for, workers
 

@@ -14,7 +14,7 @@ import pytest
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.late_inputs import at_best_delays
+from ptp_symbolic.numeric.diagnose.proposals import at_best_delays
 from ptp_symbolic.numeric.diagnose.signatures import _signature
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 

@@ -10,8 +10,8 @@ from scipy.integrate import solve_ivp
 from ptp_symbolic.numeric.data import Log
 from ptp_symbolic.numeric.diagnose import along_rows
 from ptp_symbolic.numeric.diagnose.along_rows import _Motion, grown_along_motion
+from ptp_symbolic.numeric.diagnose.confirm import breaks_its_law
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
-from ptp_symbolic.numeric.diagnose.law_of_rate import breaks_its_law
 from ptp_symbolic.numeric.diagnose.proposals import propose, start_for
 from ptp_symbolic.numeric.diagnose.trial import fitted
 from tests.diagnose.spring_table import (

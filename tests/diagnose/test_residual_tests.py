@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from ptp_symbolic.numeric.diagnose.residual_tests import correlations, residual_tests
+from ptp_symbolic.numeric.diagnose.remainder import correlations, residual_tests
 from ptp_symbolic.numeric.identify.constants import LAGS
 from tests.identify.curves import Floats
 from tests.identify.straight import finished

@@ -16,8 +16,8 @@ from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import Proposal, propose, start_for
 from ptp_symbolic.numeric.diagnose.refits import is_near_floor
+from ptp_symbolic.numeric.diagnose.search import floated
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
-from ptp_symbolic.numeric.diagnose.stepwise import floated
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted
 from ptp_symbolic.numeric.identify.constants import TRIED
 from ptp_symbolic.numeric.identify.work import Allowance

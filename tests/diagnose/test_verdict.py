@@ -35,7 +35,7 @@ from ptp_symbolic.numeric.diagnose.verdict import (
 )
 from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE
 from ptp_symbolic.numeric.identify.fit import Fit
-from ptp_symbolic.numeric.identify.run_groups import sizes
+from ptp_symbolic.numeric.identify.run import sizes
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
 from tests.identify.test_noise_at_rest import motion, slow_noise

@@ -11,11 +11,9 @@ from scipy.optimize import least_squares
 from scipy.stats import binom
 from scipy.stats import t as student
 
-from ptp_symbolic.numeric.friction_map.choice import choose, compare
-from ptp_symbolic.numeric.friction_map.intervals import profile
-from ptp_symbolic.numeric.friction_map.members import Member
+from ptp_symbolic.numeric.friction_map.choice import Member, choose, compare
 from ptp_symbolic.numeric.friction_map.points import LINEAR, Points
-from ptp_symbolic.numeric.friction_map.summary import friction_map
+from ptp_symbolic.numeric.friction_map.summary import friction_map, profile
 from tests.friction_map.laws import RATES, SCATTER, SPEEDS, Side, drawn, torque
 
 FULL = Member("Stribeck", True)

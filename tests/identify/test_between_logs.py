@@ -5,9 +5,8 @@ import pytest
 from scipy import stats
 from scipy.signal import lfilter
 
-from ptp_symbolic.numeric.identify.between_logs import chance_of_scatter
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
-from ptp_symbolic.numeric.identify.intervals import Estimate, estimates
+from ptp_symbolic.numeric.identify.intervals import Estimate, chance_of_scatter, estimates
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
 

@@ -6,9 +6,8 @@ from scipy.linalg import toeplitz
 from scipy.signal import lfilter
 
 from ptp_symbolic.numeric.identify.blocks import autocovariance
-from ptp_symbolic.numeric.identify.coloured_errors import coloured_variances
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
-from ptp_symbolic.numeric.identify.intervals import chance_of_zero, estimates
+from ptp_symbolic.numeric.identify.intervals import chance_of_zero, coloured_variances, estimates
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
 

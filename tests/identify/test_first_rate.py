@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.identify.constants import ROUNDING
-from ptp_symbolic.numeric.identify.first_rate import Around, first_rate
+from ptp_symbolic.numeric.identify.run import Around, first_rate
 from tests.identify.curves import Floats
 
 

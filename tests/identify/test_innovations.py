@@ -8,7 +8,7 @@ from ptp_symbolic.numeric.diagnose.gain import gain, gain_in_innovations
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.constants import MATERIAL
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
-from ptp_symbolic.numeric.identify.innovations import innovations, prediction_error_filter
+from ptp_symbolic.numeric.identify.noise import innovations, prediction_error_filter
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
 

@@ -5,7 +5,7 @@ import pytest
 from scipy import optimize
 
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
-from ptp_symbolic.numeric.identify.joint_region import closest_in_ball, joint_region
+from ptp_symbolic.numeric.identify.intervals import closest_in_ball, joint_region
 from tests.identify.straight import finished
 
 

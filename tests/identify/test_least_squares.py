@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from ptp_symbolic.numeric.identify.bounded_step import limited_step
 from ptp_symbolic.numeric.identify.constants import LARGEST_STEP
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
 from ptp_symbolic.numeric.identify.least_squares import (
     Optimum,
     Problem,
     cost_of,
+    limited_step,
     minimise,
 )
 from tests.identify.curves import PHI, PRIOR, Curves, Floats, evaluation, measure

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.data.continuity import after_lost
-from ptp_symbolic.numeric.identify.lost_samples import parted_at_lost_samples
+from ptp_symbolic.numeric.data.latency import after_lost
+from ptp_symbolic.numeric.diagnose.cut_runs import parted_at_lost_samples
 from ptp_symbolic.numeric.identify.run import Run
 from tests.identify.curves import Floats
 from tests.identify.test_windows import FREE, INERTIA, MODEL, run_of

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from ptp_symbolic.numeric.identify.noise_at_rest import is_missed_at_rest, stretches_at_rest
+from ptp_symbolic.numeric.identify.noise import is_missed_at_rest, stretches_at_rest
 from tests.identify.curves import Floats
 
 REST, TURN = 300, 500  # samples

@@ -1,6 +1,6 @@
 """Values that are kept as long as they are recent."""
 
-from ptp_symbolic.numeric.identify.recent import Recent
+from ptp_symbolic.numeric.identify.equation_space import Recent
 
 
 def test_the_last_values_are_made_once_and_the_oldest_anew() -> None:

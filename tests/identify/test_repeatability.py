@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.identify.repeatability import repeatability
+from ptp_symbolic.numeric.identify.noise import repeatability
 from ptp_symbolic.numeric.identify.run import Run
 from tests.identify.straight import run_of
 

@@ -19,7 +19,7 @@ from ptp_symbolic.numeric.identify.intervals import (
     project_out,
 )
 from ptp_symbolic.numeric.identify.replays import estimable, with_input_noise
-from ptp_symbolic.numeric.identify.run_inputs import with_inputs
+from ptp_symbolic.numeric.identify.run import with_inputs
 from ptp_symbolic.numeric.identify.simulations import Effort
 from ptp_symbolic.numeric.simulation.signals.inputs import constant, stack, table
 from tests.identify.curves import Floats

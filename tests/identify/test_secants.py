@@ -5,8 +5,7 @@ import pytest
 
 from ptp_symbolic.numeric.identify.constants import STEP
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
-from ptp_symbolic.numeric.identify.least_squares import Problem, minimise
-from ptp_symbolic.numeric.identify.secants import Secants
+from ptp_symbolic.numeric.identify.least_squares import Problem, Secants, minimise
 from tests.identify.curves import Floats, evaluation
 
 TREAD, TARGET, ROWS = 0.01, np.array([0.7357, 0.3333]), 400

@@ -5,8 +5,7 @@ import pytest
 from scipy import signal, stats
 
 from ptp_symbolic.numeric.identify.constants import SEGMENT
-from ptp_symbolic.numeric.identify.noise import coloured_noise
-from ptp_symbolic.numeric.identify.steady_noise import _spread, degrees, is_steady
+from ptp_symbolic.numeric.identify.noise import _spread, coloured_noise, degrees, is_steady
 from tests.identify.curves import Floats
 
 RUNS, SAMPLES = 5, 2000

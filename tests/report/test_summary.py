@@ -10,12 +10,11 @@ import pytest
 
 from ptp_symbolic.numeric.diagnose import summary
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.curves import curves_of
-from ptp_symbolic.numeric.diagnose.errors import error_of
-from ptp_symbolic.numeric.diagnose.residual_tests import residual_tests
-from ptp_symbolic.numeric.diagnose.sizes import sizes_of
+from ptp_symbolic.numeric.diagnose.errors import curves_of, error_of
+from ptp_symbolic.numeric.diagnose.findings import Tried
+from ptp_symbolic.numeric.diagnose.remainder import residual_tests
+from ptp_symbolic.numeric.diagnose.summary import sizes_of
 from ptp_symbolic.numeric.diagnose.trial import Trial
-from ptp_symbolic.numeric.diagnose.tried import Tried
 from ptp_symbolic.numeric.diagnose.verdict import EXPLAINED, NOTHING_MISSING, PARTLY, UNEXPLAINED
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from ptp_symbolic.numeric.identify.intervals import Estimate

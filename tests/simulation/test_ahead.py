@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from ptp_symbolic.numeric.simulation import ahead, fixed_runner, held_samples, hybrid
+from ptp_symbolic.numeric.simulation import ahead, fixed_runner, hybrid, sampling
 from ptp_symbolic.numeric.simulation.ahead import (
     FIXED_RUNNER,
     HELD_SAMPLES,
@@ -80,7 +80,7 @@ def test_what_is_compiled_ahead_is_what_runs_and_leaves_its_mark(mark: Path) -> 
     assert hybrid.runner.cache_info().currsize == 1
     assert mark.exists()
     assert not ahead._mark(SAMPLED_RUNNER).exists()
-    for kernel, made in ((HELD_SAMPLES, held_samples.loop), (FIXED_RUNNER, fixed_runner.runner)):
+    for kernel, made in ((HELD_SAMPLES, sampling.loop), (FIXED_RUNNER, fixed_runner.runner)):
         made.cache_clear()
         exec(COMPILE[kernel], {})
         assert made.cache_info().currsize == 1

@@ -17,7 +17,7 @@ from ptp_symbolic.numeric.simulation.integration import (
     tolerance_weights,
 )
 from ptp_symbolic.numeric.simulation.kernels.records import DONE, KERNEL
-from ptp_symbolic.numeric.simulation.methods.propagator import double, fill_phi_functions
+from ptp_symbolic.numeric.simulation.methods.exponential_step import double, fill_phi_functions
 from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, constant, ramp, stack, step
 from ptp_symbolic.platform import (
     EffectDeclaration,

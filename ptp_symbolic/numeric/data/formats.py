@@ -1,11 +1,13 @@
-"""Which reader a file needs, by the end of its name."""
+"""Which reader a file needs, by the end of its name.
+
+Tables of files that a library reads: MATLAB, Parquet, TDMS, ROS bags and MCAP.
+"""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.data.csv_table import read_csv, read_excel
-from ptp_symbolic.numeric.data.foreign_table import BAG, foreign_tables
+from ptp_symbolic.numeric.data.csv_table import BAG, foreign_tables, read_csv, read_excel
 from ptp_symbolic.numeric.data.table import Table
 
 FOREIGN: Mapping[str, str] = {".mat": "MATLAB", ".parquet": "Parquet", ".tdms": "TDMS"}

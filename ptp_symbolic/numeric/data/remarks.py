@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.data.continuity import (
+from ptp_symbolic.numeric.data.latency import (
     BESIDE,
     LONE,
     LONG_PAUSE,

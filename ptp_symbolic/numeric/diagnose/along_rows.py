@@ -15,12 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate, with_what_needs_it
-from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, why_unconfirmed
+from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, breaks_its_law, why_unconfirmed
 from ptp_symbolic.numeric.diagnose.declared_rows import equation_space, possible
 from ptp_symbolic.numeric.diagnose.findings import looked_at
 from ptp_symbolic.numeric.diagnose.gain import Gain, compared
 from ptp_symbolic.numeric.diagnose.held_out import simulated_freely
-from ptp_symbolic.numeric.diagnose.law_of_rate import breaks_its_law
 from ptp_symbolic.numeric.diagnose.proposals import Proposals, in_rows_of, start_of
 from ptp_symbolic.numeric.diagnose.regression import Regression, block_numbers
 from ptp_symbolic.numeric.diagnose.subsets import exchanges, gain_along_motion, larger_sets

@@ -6,7 +6,12 @@ from functools import partial
 from typing import NamedTuple
 
 from ptp_symbolic.numeric.diagnose.candidates import with_what_needs_it
-from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, at_bound, why_unconfirmed
+from ptp_symbolic.numeric.diagnose.confirm import (
+    answers_to_inputs,
+    at_bound,
+    breaks_its_law,
+    why_unconfirmed,
+)
 from ptp_symbolic.numeric.diagnose.findings import Refusals, Step, step_of
 from ptp_symbolic.numeric.diagnose.floor import (
     Floor,
@@ -17,14 +22,11 @@ from ptp_symbolic.numeric.diagnose.floor import (
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain, gain_in_innovations
 from ptp_symbolic.numeric.diagnose.groups import Rival
 from ptp_symbolic.numeric.diagnose.held_out import held_out_fit, held_out_gain
-from ptp_symbolic.numeric.diagnose.law_of_rate import breaks_its_law
 from ptp_symbolic.numeric.diagnose.refits import expected_gain, forms, without_run
-from ptp_symbolic.numeric.diagnose.seeker import Seeker
-from ptp_symbolic.numeric.diagnose.simpler_forms import begun_in_form, simplified
+from ptp_symbolic.numeric.diagnose.seeker import Seeker, begun_in_form, simplified
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial
-from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
 from ptp_symbolic.numeric.identify.fit import Fit
-from ptp_symbolic.numeric.identify.replays import estimable
+from ptp_symbolic.numeric.identify.replays import estimable, with_finite_differences
 
 
 class Weakness(NamedTuple):

@@ -1,24 +1,195 @@
-"""Runs that nothing predicts to their end: cut into windows with starts of their own."""
+"""Runs that nothing predicts to their end: cut into windows with starts of their own.
 
-from collections.abc import Callable
+Runs of which samples are missing: where it matters what the inputs did meanwhile, a new part.
+
+Some of many windows: enough to tell what is usual, spread over the logs.
+
+Fits over ever longer windows, which lead to where whole runs, or longer windows, fit.
+
+The misfit of long runs is a staircase where friction lets go: one start of motion a sample late
+moves all that follows. A window that holds a single one tells smoothly how late it is, and longer
+ones tell the parameters apart (multiple shooting: Bock, 1983).
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.diagnose.leading_windows import spread_over
+from ptp_symbolic.numeric.data.latency import IntArray, after_lost, parted
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.left_over import left_over
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial, mean_squares
-from ptp_symbolic.numeric.identify.constants import MOST, SHORT
-from ptp_symbolic.numeric.identify.lost_samples import parted_at_lost_samples
-from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.diagnose.trial import (
+    Task,
+    Trial,
+    continued,
+    fitted,
+    is_alike,
+    mean_squares,
+)
+from ptp_symbolic.numeric.identify.constants import (
+    CYCLES,
+    ITERATIONS,
+    LENGTHS,
+    MOST,
+    SEARCH_PERIOD,
+    SHORT,
+    WIDE_STEP,
+)
+from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate
+from ptp_symbolic.numeric.identify.robust_loss import MANY_RUNS, weighted_median
+from ptp_symbolic.numeric.identify.run import Run, sizes, with_start
+from ptp_symbolic.numeric.identify.run_starts import has_linked, linked, starts_in_place
+from ptp_symbolic.numeric.identify.sample_averages import samples_within, thinned
+from ptp_symbolic.numeric.identify.simulations import POLISH
 from ptp_symbolic.numeric.identify.windows import (
+    cut,
     cut_where_errors_grow,
     multiplies_errors,
+    piece_of,
     split_run,
 )
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import held_values, stack, table
 
 FloatArray = NDArray[np.float64]
+
+
+def parted_at_lost_samples(model: Model, run: Run, p: FloatArray) -> tuple[Run, ...]:
+    """The run, or its parts where the signals depend on what the inputs did while samples were
+    missing, at p [np]: held until the next sample, or changed right after the last one, they would
+    move some signal by more than its noise.
+    """
+    gaps = after_lost(run.time)
+    parts = parted(run.time, gaps) if gaps.size else []
+    if len(parts) < 2 or not _matters(model, run, p, gaps):
+        return (run,)
+    return tuple(
+        with_start(model, piece_of(run, part, number), underway=part.start > 0)
+        for number, part in enumerate(parts, start=1)
+    )
+
+
+def _matters(model: Model, run: Run, p: FloatArray, gaps: IntArray) -> bool:
+    """Whether inputs that change at the beginning of the gaps before the samples `gaps`, not at
+    their ends, move a signal by more than its noise.
+    """
+    none = np.zeros(0, dtype=np.int64)
+    at_end, at_begin = (
+        evaluate(model, one, p, run.guess, none, False, Tolerance())
+        for one in (run, _changed_at_begin(run, gaps))
+    )
+    if at_end.failed or at_begin.failed:
+        return True
+    moved = (at_end.residual - at_begin.residual).reshape(run.measured.shape)
+    return bool(np.any(np.mean(moved**2, axis=0) > 1.0))
+
+
+def _changed_at_begin(run: Run, gaps: IntArray) -> Run:
+    """The run with inputs that change right after the last samples before the gaps."""
+    signals = []
+    for times, values in held_values(run.inputs):
+        earlier = values.copy()
+        for gap in gaps:
+            inside = (times >= run.time[gap - 1]) & (times < run.time[gap])
+            held = max(0, int(np.searchsorted(times, run.time[gap], side="right")) - 1)
+            earlier[inside] = values[held]
+        signals.append(table(times, earlier, "hold"))
+    return replace(run, inputs=stack(signals))
+
+
+def leading(windows: tuple[Run, ...], length: float, stretch: float) -> tuple[Run, ...]:
+    """Windows of `length` s that lead a search: spread over the logs; where each tells how the next
+    one begins, in stretches of `stretch` s, and all of them where that is no longer than a window.
+    """
+    if not has_linked(windows):
+        return spread_over(windows, length)
+    count = round(stretch / length)
+    if count <= 1:
+        return windows
+    series = [s[k : k + count] for s in linked(windows) for k in range(0, len(s), count)]
+    return tuple(windows[k] for s in series[:: _apart(windows, length)] for k in s)
+
+
+def spread_over(windows: tuple[Run, ...], length: float) -> tuple[Run, ...]:
+    """Windows of `length` s spread over the logs, at least as many as tell what is usual, and more
+    of shorter ones, in the same time.
+    """
+    return windows[:: _apart(windows, length)]
+
+
+def _apart(windows: Sequence[Run], length: float) -> int:
+    """Every which one to take of `windows` of `length` s."""
+    return max(1, int(len(windows) * length / (MANY_RUNS * SHORT)))
+
+
+def growing(task: Task, *, few: bool = False) -> list[Task]:
+    """The task over windows of doubled lengths, up to 2 s, that are shorter than its runs; over all
+    of them, or a `few` that tell what is usual, in pairs where one tells how the other begins.
+    """
+    runs = [thinned(run, samples_within(run, SEARCH_PERIOD)) for run in task.whole]
+    longest = max(float(run.time[-1] - run.time[0]) for run in task.train)
+    every = {x: cut(task.model, runs, x) for x in LENGTHS[:1:-1] if x < longest}
+    windows = [leading(w, x, 2.0 * x) if few else w for x, w in every.items()]
+    return [replace(task, train=w, robust_below=np.inf) for w in windows]
+
+
+def led_through(
+    parts: Sequence[Task], candidates: Sequence[Candidate], values: Mapping[str, float]
+) -> Mapping[str, float]:
+    """Values to which windows lead a set from `values`, through one of `parts` after the other."""
+    for part in parts:
+        values = led(part, candidates, values).values
+    return values
+
+
+def led(part: Task, candidates: Sequence[Candidate], values: Mapping[str, float]) -> Trial:
+    """A set fitted to windows from `values`."""
+    trial = settled(part, fitted(part, candidates, values, None), None, brief=True)
+    return continued(part, trial, POLISH, secants=WIDE_STEP)
+
+
+def settled(task: Task, trial: Trial, executor: Executor | None, *, brief: bool = False) -> Trial:
+    """The trial fitted on until some iterations more change next to nothing, the gears put in their
+    places anew each time: a window that began on the wrong side of a gap holds the others back.
+    `brief` is that of `starts_in_place`.
+    """
+    for _ in range(CYCLES):
+        z = starts_of(trial, executor, brief=brief)
+        better = continued(task, trial, ITERATIONS, executor=executor, z=z)
+        if is_alike(better, trial):
+            break
+        trial = better
+    return trial
+
+
+def starts_of(trial: Trial, executor: Executor | None, *, brief: bool = False) -> list[FloatArray]:
+    """Start unknowns, each [nz], of the runs of a trial with what is hidden at their start in place
+    (see `starts_in_place`).
+    """
+    fit = trial.fit
+    usual = _usual_square(trial, _squares(trial))
+    return starts_in_place(
+        fit.model, fit.runs, fit.values, fit.z, fit.tolerance, executor, brief=brief, usual=usual
+    )
+
+
+def shares_of_usual(trial: Trial) -> FloatArray:
+    """Mean square [n] that every run of a trial leaves, in those of the usual one."""
+    square = _squares(trial)
+    return square / max(_usual_square(trial, square), 1e-300)
+
+
+def _squares(trial: Trial) -> FloatArray:
+    fit = trial.fit
+    return np.asarray(mean_squares(fit.evaluations, fit.runs).mean(axis=1), dtype=np.float64)
+
+
+def _usual_square(trial: Trial, square: FloatArray) -> float:
+    return float(weighted_median(square[:, None], sizes(trial.fit.runs))[0])
+
 
 CUT = "runs that multiply small errors are cut into windows"
 

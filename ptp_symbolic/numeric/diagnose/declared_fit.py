@@ -1,24 +1,35 @@
-"""The declared model fitted to the training runs: to whole ones, or led there over windows."""
+"""The declared model fitted to the training runs: to whole ones, or led there over windows.
+
+The declared model and the sets that contain it: neither is stuck where the other shows a way.
+
+A set fits no worse than the declared model, which it contains, and what it gains is only worth a
+name where the declared model had the same chance.
+"""
 
 from dataclasses import replace
 
 import numpy as np
 
 from ptp_symbolic.numeric.diagnose.cut_runs import (
+    growing,
     in_windows,
     in_windows_of,
+    led_through,
     parted_task,
+    settled,
     takes_away_most,
     validation_in_windows,
 )
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
-from ptp_symbolic.numeric.diagnose.fewer_samples import with_fewer_samples
 from ptp_symbolic.numeric.diagnose.findings import Search, step_of
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
 from ptp_symbolic.numeric.diagnose.gain import gain
-from ptp_symbolic.numeric.diagnose.growing_windows import growing, led_through, settled
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise, left_over
-from ptp_symbolic.numeric.diagnose.nested import beside_declared
+from ptp_symbolic.numeric.diagnose.left_over import (
+    Carried,
+    carried_noise,
+    left_over,
+    with_fewer_samples,
+)
 from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.refits import (
     begun_anew,
@@ -29,9 +40,34 @@ from ptp_symbolic.numeric.diagnose.refits import (
     refitted_in,
     strayed_from_start,
 )
-from ptp_symbolic.numeric.diagnose.starts import far_starts
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving, ranked
+from ptp_symbolic.numeric.diagnose.starts import far_starts, taken_over
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving, is_near, ranked
 from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, SCREENED
+
+
+def beside_declared(task: Task, trial: Trial, declared: Trial, carried: Carried) -> Trial:
+    """A trial that fits worse than the declared model, begun anew beside that, its effects as they
+    are or at their vanishing values; `carried` as in `Search`.
+    """
+    own = {name: trial.values[name] for c in trial.candidates for name in c.names}
+    off = {n: c.vanishing[f.name] for c in trial.candidates for f in c.defining for n in f.names}
+    begun = [
+        fitted(task, trial.candidates, values, declared.fit.z, 0, declared.fit)
+        for values in (declared.values | own, declared.values | own | off)
+    ]
+    left = halving(task, begun, 1)
+    return ranked([trial, *(polished(task, t, carried) for t in left)])[0]
+
+
+def declared_from(task: Task, trial: Trial, declared: Trial, carried: Carried) -> Trial | None:
+    """The declared model fitted from where a trial ended, as it is and where it takes over what the
+    effects did; None unless that is materially better than `declared`, which was in a local minimum
+    then.
+    """
+    left = halving(task, taken_over(task, (), trial), 1)
+    again = [polished(task, t, carried) for t in left if is_near(t, [declared])]
+    best = ranked([declared, *again])[0]
+    return best if gain(best, declared).share >= task.material else None
 
 
 def fit_declared(task: Task, proposals: Proposals) -> tuple[Task, Trial]:

@@ -3,6 +3,11 @@
 Rounding and noise of a signal, as the platform declares them or as its logs show; the colour of
 that noise, where it is not declared, from what the model leaves; and the noise of the inputs,
 carried to the outputs by the model itself.
+
+The samples that a search needs: simulations end a step at each, which is most of their cost.
+
+A search compares sets over runs with fewer samples, as long as the simulated signals at these stay
+the same within the noise; what was found is fitted to every sample at last.
 """
 
 from collections.abc import Sequence
@@ -11,19 +16,25 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.diagnose.fewer_samples import with_every_residual
-from ptp_symbolic.numeric.diagnose.left_over import Carried, left_over
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial, mean_squares
-from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, TUNING
+from ptp_symbolic.numeric.diagnose.left_over import Carried, left_over, with_every_residual
+from ptp_symbolic.numeric.diagnose.trial import (
+    Task,
+    Trial,
+    mean_squares,
+)
+from ptp_symbolic.numeric.identify.constants import (
+    ABOVE_NOISE,
+    TUNING,
+)
 from ptp_symbolic.numeric.identify.noise import (
     POLES,
     Noise,
     coloured_noise,
     hidden_from_differences,
+    is_missed_at_rest,
     most_in_quietest,
 )
-from ptp_symbolic.numeric.identify.noise_at_rest import is_missed_at_rest
-from ptp_symbolic.numeric.identify.run_groups import by_source
+from ptp_symbolic.numeric.identify.run import by_source
 
 FloatArray = NDArray[np.float64]
 

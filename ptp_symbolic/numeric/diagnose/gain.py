@@ -34,11 +34,10 @@ from ptp_symbolic.numeric.identify.constants import (
 )
 from ptp_symbolic.numeric.identify.coordinates import to_search
 from ptp_symbolic.numeric.identify.fit import Fit
-from ptp_symbolic.numeric.identify.innovations import innovations, prediction_error_filter
 from ptp_symbolic.numeric.identify.intervals import chance_of, project_out
+from ptp_symbolic.numeric.identify.noise import innovations, prediction_error_filter
 from ptp_symbolic.numeric.identify.robust_loss import huber_loss, weighted_median
-from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.identify.run_groups import by_log
+from ptp_symbolic.numeric.identify.run import Run, by_log
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]

@@ -30,19 +30,22 @@ from ptp_symbolic.numeric.identify.constants import (
     TUNING,
     UNALIKE,
 )
-from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
 from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
-from ptp_symbolic.numeric.identify.intervals import project_out, reaches
-from ptp_symbolic.numeric.identify.joint_region import closest_in_ball, joint_region
+from ptp_symbolic.numeric.identify.intervals import (
+    closest_in_ball,
+    joint_region,
+    project_out,
+    reaches,
+)
 from ptp_symbolic.numeric.identify.least_squares import BIGGEST
+from ptp_symbolic.numeric.identify.replays import with_finite_differences
 from ptp_symbolic.numeric.identify.robust_loss import (
     MANY_RUNS,
     huber_loss,
     trimmed_mean,
     weighted_median,
 )
-from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.identify.run_groups import by_source, sizes
+from ptp_symbolic.numeric.identify.run import Run, by_source, sizes
 from ptp_symbolic.numeric.identify.simulations import POLISH, Effort
 
 FloatArray = NDArray[np.float64]

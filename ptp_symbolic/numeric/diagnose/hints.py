@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy import signal, stats
 
 from ptp_symbolic.numeric.diagnose.linear import projected_off
-from ptp_symbolic.numeric.diagnose.one_change import Looked, change_of, long_run, trimmed
+from ptp_symbolic.numeric.diagnose.remainder import Looked, change_of, long_run, trimmed
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.constants import (
     CYCLES,
@@ -25,8 +25,7 @@ from ptp_symbolic.numeric.identify.constants import (
     ROWS_PER_WINDOW,
     TEST_ALARM,
 )
-from ptp_symbolic.numeric.identify.equation_space import EquationSpace
-from ptp_symbolic.numeric.identify.row_motion import row_motion
+from ptp_symbolic.numeric.identify.equation_space import EquationSpace, row_motion
 from ptp_symbolic.numeric.identify.weak_form import averages
 
 FloatArray = NDArray[np.float64]

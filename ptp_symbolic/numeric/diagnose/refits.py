@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import FAR_OFF, Candidate
+from ptp_symbolic.numeric.diagnose.cut_runs import settled, shares_of_usual, starts_of
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
-from ptp_symbolic.numeric.diagnose.growing_windows import settled, shares_of_usual, starts_of
 from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise, left_over
 from ptp_symbolic.numeric.diagnose.linear import (
     effect_of,
@@ -39,7 +39,7 @@ from ptp_symbolic.numeric.identify.constants import (
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.fit import Fit
-from ptp_symbolic.numeric.identify.linked_windows import has_linked
+from ptp_symbolic.numeric.identify.run_starts import has_linked
 from ptp_symbolic.numeric.identify.simulations import POLISH
 
 FloatArray = NDArray[np.float64]

@@ -1,22 +1,33 @@
 """The search: sets that the equation space proposes, refitted by simulation; the best of them is
 completed, pruned and grown until every candidate in it is needed and none outside would add to it.
+
+The frequency of a wave by what it changes in the simulated outputs.
+
+Where a machine rests, or lies in a gap, most of the time, few rows are left, and no line stands out
+in them. The outputs still know it: waves of all frequencies are simulated in turn.
+
+Sets that grow and shrink by one candidate at a time: stepwise selection, of all candidates or of
+effects alone.
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.cut_runs import in_windows_of, parted_task, takes_away_most
 from ptp_symbolic.numeric.diagnose.declared_fit import (
     better_over_same_runs,
+    declared_from,
     led_over_windows,
     over_whole_runs,
 )
-from ptp_symbolic.numeric.diagnose.fewer_samples import with_fewer_samples
-from ptp_symbolic.numeric.diagnose.findings import Search, Step, step_of
+from ptp_symbolic.numeric.diagnose.findings import Search, Step, step_of, worth_keeping
 from ptp_symbolic.numeric.diagnose.gain import gain
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise
-from ptp_symbolic.numeric.diagnose.nested import declared_from
-from ptp_symbolic.numeric.diagnose.output_lines import at_lines_of_outputs
+from ptp_symbolic.numeric.diagnose.left_over import carried_noise, with_fewer_samples
+from ptp_symbolic.numeric.diagnose.linear import projected_off, stacked_jacobian, stacked_residual
 from ptp_symbolic.numeric.diagnose.proposals import (
     Proposal,
     Proposals,
@@ -24,10 +35,10 @@ from ptp_symbolic.numeric.diagnose.proposals import (
     propose,
 )
 from ptp_symbolic.numeric.diagnose.refits import is_near_floor, refitted_in
-from ptp_symbolic.numeric.diagnose.seeker import Seeker
-from ptp_symbolic.numeric.diagnose.simpler_forms import simplified
-from ptp_symbolic.numeric.diagnose.starts import from_far_off, started
-from ptp_symbolic.numeric.diagnose.stepwise import by_effects_alone, extended, floated
+from ptp_symbolic.numeric.diagnose.responses import response_columns
+from ptp_symbolic.numeric.diagnose.seeker import Seeker, simplified
+from ptp_symbolic.numeric.diagnose.signatures import at_line, axes_of, band
+from ptp_symbolic.numeric.diagnose.starts import from_far_off, started, taken_over
 from ptp_symbolic.numeric.diagnose.through_windows import each_through_windows
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
@@ -38,12 +49,189 @@ from ptp_symbolic.numeric.diagnose.trial import (
     ranked,
 )
 from ptp_symbolic.numeric.identify.constants import (
+    CYCLES_APART,
     DEVIATIONS,
     LARGEST,
     MOST,
+    REACH,
+    ROWS_PER_WINDOW,
+    SCANNED,
     SCREENED,
 )
+from ptp_symbolic.numeric.identify.equation_space import EquationSpace, row_motion
 from ptp_symbolic.numeric.identify.work import Allowance
+
+FloatArray = NDArray[np.float64]
+
+
+def at_lines_of_outputs(
+    task: Task, space: EquationSpace | None, trial: Trial, waves: Sequence[Candidate]
+) -> tuple[Candidate, ...]:
+    """Those of the candidates `waves` of which a line stands out in what a trial leaves of the
+    outputs, by linear prediction; at that line, in all their forms. None without the `space` of
+    rows, which tells how far to look; and none of a wave of which the rows tell all frequencies.
+    """
+    found: list[Candidate] = []
+    if space is None:
+        return ()
+    for key in dict.fromkeys(c.key for c in waves):
+        forms = [c for c in waves if c.key == key]
+        line = None if key in trial.keys else _line(task, space, trial, forms[0])
+        placed = [at_line(form, *line) for form in forms] if line is not None else []
+        found += [c for c in placed if c is not None]
+    return tuple(found)
+
+
+def _line(
+    task: Task, space: EquationSpace, trial: Trial, candidate: Candidate
+) -> tuple[float, float, int] | None:
+    """The frequency of the strongest line of a candidate, in Hz or cycles per turn, the lowest that
+    is a line, and how many can be told from one another; None where none takes away a material
+    share, and twice what any other does: what drifts looks like many slow waves. And where there
+    are more rows, those that overlap counted once, than frequencies, or too many to simulate.
+
+    A step of half of what tells two apart dims a line between by a fifth; then it is looked for
+    beside the strongest.
+    """
+    span, usual, rows = _place(space, trial, candidate)
+    lowest, highest = band(space, candidate, span, usual)
+    apart = int((highest - lowest) * span)
+    if not rows / ROWS_PER_WINDOW < apart <= SCANNED:
+        return None
+    task.progress(f"simulating {candidate.key} at all frequencies, {apart} of which are resolved")
+    away = stacked_jacobian(trial.fit)
+    residual = projected_off(stacked_residual(trial.fit)[:, None], away)[:, 0]
+
+    def left(frequency: float) -> float:
+        return _left(task, trial, candidate, frequency, residual, away)
+
+    steps = np.arange(lowest, highest, MOST / span)
+    shares = np.array(list(task.executor.map(left, steps)))
+    best = float(steps[int(np.argmin(shares))])
+    others = shares[np.abs(steps - best) > 1.0 / span]
+    close = np.clip(best + CYCLES_APART / span * np.array([-1.0, 0.0, 1.0]), lowest, highest)
+    shares = np.array(list(task.executor.map(left, close)))
+    taken, by_others = 1.0 - shares.min(), 1.0 - others.min(initial=1.0)
+    if taken < task.material or by_others > MOST * taken:
+        return None
+    return float(close[int(np.argmin(shares))]), 0.9 * lowest, apart
+
+
+def _place(space: EquationSpace, trial: Trial, candidate: Candidate) -> tuple[float, float, int]:
+    """How far the place goes that a wave is locked to, in s or turns, how fast it usually goes as
+    it moves, per s (an axis without rows: 1 rad/s), and how many rows tell of it.
+    """
+    assert candidate.locked is not None
+    runs, own = trial.fit.runs, axes_of(space, candidate)
+    rows = int(np.isin(space.labels()[0], own).sum())
+    if candidate.locked[1] == "time":
+        return max(run.time[-1] for run in runs) - min(run.time[0] for run in runs), 1.0, rows
+    columns = [run.measured[:, run.signals.index(f"theta_{candidate.axis}")] for run in runs]
+    rate = np.abs(row_motion(space, own[0]).rate) if rows else np.ones(1)
+    turns = float(np.ptp(np.concatenate(columns))) / (2.0 * np.pi)
+    return turns, float(np.median(rate)) / (2.0 * np.pi), rows
+
+
+def _left(
+    task: Task,
+    trial: Trial,
+    candidate: Candidate,
+    frequency: float,
+    residual: FloatArray,
+    away: FloatArray,
+) -> float:
+    """Share of the square of a `residual` [n] that is left beside a wave of some frequency in any
+    of its shapes; both projected off the columns `away` [n, nf].
+    """
+    assert candidate.locked is not None
+    most = REACH * float(np.linalg.norm(residual))
+    shapes = [{**shape, candidate.locked[0]: frequency} for shape in candidate.shapes]
+    found = [response_columns(task, trial, candidate, shape, most) for shape in shapes]
+    tables = [columns.table for columns in found if columns is not None]
+    if not tables:
+        return 1.0
+    wave = projected_off(np.column_stack(tables), away)
+    rest = projected_off(residual[:, None], wave)
+    return float(np.sum(rest**2) / max(np.sum(residual**2), 1e-300))
+
+
+def extended(
+    seeker: Seeker, best: Trial, steps: list[Step], end: Trial | None = None
+) -> tuple[Trial, list[Step]]:
+    """A pruned trial with one candidate more as long as one is needed, up to the set of `end`, to
+    which none could be added before; and the `steps` of its candidates. A candidate that leads the
+    way may be dropped once others are there: then there is room for one more.
+    """
+    material = seeker.task.material
+    for rounds in range(2 * LARGEST):
+        if rounds >= LARGEST <= len(best.candidates):
+            break
+        if end is not None and best.keys == end.keys and gain(best, end).share < material:
+            break
+        seeker.tried.others[:] = worth_keeping(seeker.tried.others, best)
+        grown = seeker.grown(best)
+        if grown is None:
+            break
+        seeker.tried.others.append(best)
+        full = seeker.completed(grown)
+        if gain(grown, best).share >= MOST:  # one that gains less has been begun anew before
+            full = seeker.restarted(full)
+        pruned, fewer = seeker.pruned(full)
+        same = pruned.keys == best.keys
+        if same and ranked([best, pruned])[0] is best:
+            break
+        seeker.follow(pruned)
+        best, steps = pruned, fewer  # the same candidates too: a third may show them a better place
+    return best, steps
+
+
+def floated(seeker: Seeker, best: Trial, steps: list[Step]) -> tuple[Trial, list[Step]]:
+    """The trial, or a better one from where a set goes without one of its candidates: what stands
+    in for an effect hides it as long as it is there (floating search: Pudil, Novovicova and
+    Kittler, 1994).
+    """
+    if seeker.is_at_noise(best):
+        return best, steps
+    for step in steps:
+        others = tuple(c for c in seeker.task.candidates if c.key != step.candidate.key)
+        grown = seeker.among(others).grown(step.without, briefly=True)
+        if grown is not None and gain(grown, best).share >= seeker.task.material:
+            seeker.tried.others.append(best)
+            return extended(seeker, *seeker.pruned(seeker.completed(grown)))
+    return best, steps
+
+
+def by_effects_alone(
+    seeker: Seeker, best: Trial, steps: list[Step], end: Trial | None = None
+) -> tuple[Trial, list[Step]]:
+    """The trial, or its effects alone where these leave only noise, or what forward selection from
+    the declared model makes of effects alone, if that fits better, or leaves only noise too with no
+    more parameters. `end` is that of `extended`.
+
+    Declared values are known, and a few of them changed together imitate much: they scale all
+    torques of an axis that is driven by a voltage. So they are taken out together: torque constant
+    and resistance change nothing but the viscous friction where one goes with the other, and none
+    can be done without alone then. A single one that leaves only noise is not doubted here.
+    """
+    quiet = seeker.is_at_noise(best)
+    known = [c for c in best.candidates if c.is_declared_value]
+    if quiet and (not known or len(best.candidates) == 1):
+        return best, steps
+    effects = tuple(c for c in best.candidates if not c.is_declared_value)
+    if known and effects:
+        left = seeker.polished(ranked(taken_over(seeker.task, effects, best))[0])
+        if seeker.is_at_noise(left):
+            seeker.tried.others.append(best)
+            return seeker.pruned(left)
+        seeker.tried.others.append(left)
+    alone = seeker.among(tuple(c for c in seeker.task.candidates if not c.is_declared_value))
+    other, fewer = extended(alone, seeker.declared, [], end)
+    no_larger = seeker.is_at_noise(other) and len(other.fit.free) <= len(best.fit.free)
+    if ranked([best, other])[0] is best and not (quiet and no_larger):
+        seeker.tried.others.append(other)
+        return best, steps
+    seeker.tried.others.append(best)
+    return other, fewer
 
 
 def search(task: Task, *, brief: bool = False) -> Search:

@@ -1,24 +1,34 @@
-"""The moves of a search: sets are completed, pruned, grown, exchanged by refits."""
+"""The moves of a search: sets are completed, pruned, grown, exchanged by refits.
 
-from collections.abc import Sequence
+What a search has tried: a hundred trials, whose Jacobians are large, and where sets end.
+
+Every candidate by itself over a few short windows: what the motion alone does not show.
+
+Windows forget: neither a rest nor a bounce in a gap that ends a sample late leads a fit astray
+there, so that a few iterations tell how much a candidate is worth, and at which values.
+
+Every candidate of a set in the simplest of its forms that will do.
+"""
+
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate, with_all_they_need
-from ptp_symbolic.numeric.diagnose.findings import Step, is_earned, looked_at, step_of
+from ptp_symbolic.numeric.diagnose.declared_fit import beside_declared
+from ptp_symbolic.numeric.diagnose.findings import Step, Tried, is_earned, looked_at, step_of
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain, p_value
 from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise
-from ptp_symbolic.numeric.diagnose.nested import beside_declared
-from ptp_symbolic.numeric.diagnose.proposals import Proposals
+from ptp_symbolic.numeric.diagnose.proposals import Proposals, start_for
 from ptp_symbolic.numeric.diagnose.refits import (
     expected_gain,
+    forms,
     fullest,
     polished,
     sharpened,
     to_its_end,
 )
 from ptp_symbolic.numeric.diagnose.responses import responses
-from ptp_symbolic.numeric.diagnose.screening import screened
 from ptp_symbolic.numeric.diagnose.starts import along, from_rows, in_place, taken_over
 from ptp_symbolic.numeric.diagnose.subsets import exchanges
 from ptp_symbolic.numeric.diagnose.trial import (
@@ -32,7 +42,6 @@ from ptp_symbolic.numeric.diagnose.trial import (
     is_near,
     ranked,
 )
-from ptp_symbolic.numeric.diagnose.tried import Tried
 from ptp_symbolic.numeric.identify.constants import (
     ITERATIONS,
     LITTLE,
@@ -40,6 +49,45 @@ from ptp_symbolic.numeric.identify.constants import (
     SCREENED,
     TRIED,
 )
+
+
+def screened(
+    task: Task,
+    found: Proposals,
+    kept: Sequence[Candidate],
+    wanted: Sequence[Candidate],
+    values: Mapping[str, float],
+) -> list[Trial]:
+    """The set `kept` with those of the candidates `wanted`, and with what they bring along, that
+    fit a few windows of the task best, the best first. A candidate is tried in its simplest and in
+    its fullest form. A fit begins where the rows start the set, or at `values` and the candidate's
+    own start, whichever is better, and the windows where they begin without it; after every
+    iteration half of the fits go on.
+    """
+    part = replace(task, train=task.few)
+    z = fitted(part, kept, values, None, executor=task.executor).fit.z
+    have = {c.key for c in kept}
+    by_key = {c.key: c for c in reversed(task.candidates)}
+
+    def begun(candidate: Candidate) -> Trial:
+        added = [by_key[key] for key in candidate.brings if key not in have]
+        own = {name: f.start for c in (*added, candidate) for f in c.free for name in f.names}
+        whole = {**values, **own, **candidate.shapes[0]}
+        candidates = (*kept, *added, candidate)
+        starts = [whole, start_for(task, found, candidates, whole, linear=True)]
+        return ranked([fitted(part, candidates, start, z) for start in starts])[0]
+
+    own: dict[str, list[Candidate]] = {}
+    for c in sorted(wanted, key=lambda c: len(c.free)):
+        if c.key not in have:
+            own.setdefault(c.key, []).append(c)
+    ends = [c for forms in own.values() for c in (forms[0], *forms[1:][-1:])]
+    trials = list(task.executor.map(begun, ends))
+    rungs = [max(len(trials) >> k, TRIED) for k in range(1, ITERATIONS + 1)]
+    best: dict[tuple[str, ...], Trial] = {}
+    for trial in halving(part, trials, *rungs, iterations=1):
+        best.setdefault(trial.keys, trial)
+    return list(best.values())
 
 
 @dataclass(eq=False)
@@ -281,3 +329,39 @@ class Seeker:
         self.tried.others.extend([*found, *(t for t in left if not is_near(t, [trial]))])
         best = ranked([trial, *found])[0]
         return best if best is not trial else None
+
+
+def simplified(seeker: Seeker, trial: Trial) -> Trial:
+    """Every candidate in the simplest of its forms that loses nothing clear and material. A
+    form is not fitted where linear prediction loses most, and not to its end where that
+    foresees a material loss and most is lost after some iterations.
+    """
+    for key in trial.keys:
+        candidate = next(c for c in trial.candidates if c.key == key)
+        simpler = sorted(
+            (c for c in forms(seeker.task, candidate) if len(c.free) < len(candidate.free)),
+            key=lambda c: len(c.free),
+        )
+        for form in simpler:
+            names = {f.name for f in form.free}
+            lost = {n: v for n, v in candidate.vanishing.items() if n not in names}
+            foreseen = expected_gain(trial, lost)
+            if foreseen > MOST:
+                continue
+            smaller = begun_in_form(seeker, trial, candidate, form)
+            if foreseen >= seeker.task.material and gain(trial, smaller).share >= MOST:
+                continue
+            smaller = seeker.polished(smaller)
+            if not seeker.is_earned(gain(trial, smaller), p_value(trial, lost), ()):
+                trial = smaller
+                break
+    return trial
+
+
+def begun_in_form(seeker: Seeker, trial: Trial, candidate: Candidate, form: Candidate) -> Trial:
+    """The trial refitted, by some iterations, with a candidate in another form."""
+    dropped = set(candidate.parameters) - set(form.parameters)
+    values = trial.values | {name: seeker.task.fixed[name] for name in dropped}
+    candidates = tuple(form if c is candidate else c for c in trial.candidates)
+    task, run = seeker.task, seeker.task.executor
+    return fitted(task, candidates, values, trial.fit.z, ITERATIONS, trial.fit, executor=run)

@@ -23,8 +23,7 @@ from ptp_symbolic.numeric.identify.constants import (
     STEP,
     TRIED,
 )
-from ptp_symbolic.numeric.identify.equation_space import EquationSpace
-from ptp_symbolic.numeric.identify.row_motion import row_motion
+from ptp_symbolic.numeric.identify.equation_space import EquationSpace, row_motion
 
 FloatArray = NDArray[np.float64]
 Rows = Callable[[Mapping[str, float]], FloatArray]  # see `rows_around`

@@ -13,7 +13,6 @@ from ptp_symbolic.numeric.diagnose.proposals import Proposal, Proposals, start_f
 from ptp_symbolic.numeric.diagnose.refits import inside, over_windows, strayed_back
 from ptp_symbolic.numeric.diagnose.regression import untold
 from ptp_symbolic.numeric.diagnose.responses import Response
-from ptp_symbolic.numeric.diagnose.side_by_side import side_by_side
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
@@ -22,6 +21,7 @@ from ptp_symbolic.numeric.diagnose.trial import (
     fitted,
     misfits,
     ranked,
+    side_by_side,
     simulated,
 )
 from ptp_symbolic.numeric.identify.constants import ITERATIONS, MOST, TRIED, WIDE_STEP

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.cut_runs import growing, led, led_through, settled
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise, most_hidden
-from ptp_symbolic.numeric.diagnose.growing_windows import growing, led, led_through, settled
 from ptp_symbolic.numeric.diagnose.left_over import Carried
 from ptp_symbolic.numeric.diagnose.refits import to_its_end
 from ptp_symbolic.numeric.diagnose.trial import (

@@ -1,16 +1,19 @@
 """A trial: the declared model with a set of candidates, fitted to the training runs by
 simulation.
+
+Fits side by side, in threads of their own that share out their simulations.
 """
 
+import os
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import Executor
+from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.side_by_side import side_by_side
 from ptp_symbolic.numeric.identify.constants import (
     ITERATIONS,
     LITTLE,
@@ -24,13 +27,36 @@ from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
 from ptp_symbolic.numeric.identify.robust_loss import huber_loss, weighted_median
-from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.identify.run_groups import sizes
+from ptp_symbolic.numeric.identify.run import Run, sizes
 from ptp_symbolic.numeric.identify.simulations import Effort
 from ptp_symbolic.numeric.identify.work import Allowance
 from ptp_symbolic.numeric.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+
+
+def usable_cores() -> int:
+    """Cores that the process may use."""
+    affinity = getattr(os, "sched_getaffinity", None)  # Linux alone has one
+    return len(affinity(0)) if affinity else os.cpu_count() or 1
+
+
+def side_by_side(work: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
+    """What `work` makes of every item, in their order.
+
+    Simulations that it hands to an executor of one worker per core go on while another piece is
+    between two of its own, so that the last of three fits for two cores keeps both at work. One
+    piece more than cores is enough for that.
+    """
+    if len(items) <= 1:
+        return [work(item) for item in items]
+    with ThreadPoolExecutor(min(len(items), 1 + usable_cores())) as threads:
+        return list(threads.map(work, items))
+
+
 SHARP = MATERIAL * ROUGH  # error of simulations over the noise, at last: beside ROUGH it is none
 Progress = Callable[[str], None]
 

@@ -1,20 +1,295 @@
-"""Which member the points can show: every member is tested against all that are larger."""
+"""Which member the points can show: every member is tested against all that are larger.
+
+The nested members of the law of steady friction, as columns of a linear fit.
+
+Least squares of one member: linear at every Stribeck speed of a scan (variable projection).
+"""
 
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain, combinations
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.stats import f as fisher
 
-from ptp_symbolic.numeric.friction_map.members import Member, all_members
 from ptp_symbolic.numeric.friction_map.points import Points
-from ptp_symbolic.numeric.friction_map.scan import Block, Design, least_rss, left_out_errors
 
 FloatArray = NDArray[np.float64]
+
+
+COULOMB, STATIC, STRIBECK, VISCOUS = "Coulomb", "static", "Stribeck", "viscous"
+SPEED = "Stribeck speed"
+
+
+@dataclass(frozen=True)
+class Member:
+    """One law: Coulomb friction, and what it has besides.
+
+    `rise` is "" (none), STATIC (seen in breakaway torques alone, without a curve) or STRIBECK.
+    `by_direction` are the parts that differ between positive and negative rate. `only` is +1 or -1
+    where the rise is there in that direction alone, else 0.
+    """
+
+    rise: str
+    viscous: bool
+    by_direction: frozenset[str] = frozenset()
+    only: int = 0
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """The parts of friction that the law has."""
+        return (COULOMB, *([self.rise] * bool(self.rise)), *([VISCOUS] * self.viscous))
+
+    @property
+    def separate(self) -> bool:
+        """Whether the directions share nothing, so that each is a fit of its own."""
+        return SPEED in self.by_direction
+
+    @property
+    def speeds(self) -> int:
+        """How many Stribeck speeds the law has."""
+        return (2 if self.separate else 1) if self.rise == STRIBECK else 0
+
+    @property
+    def size(self) -> int:
+        """Number of parameters."""
+        return len(self.parts) + len(self.by_direction - {SPEED}) + self.speeds
+
+    @property
+    def title(self) -> str:
+        """The law in words."""
+        law = " + ".join(self.parts)
+        differing = ", ".join(p for p in self.parts if p in self.by_direction)
+        remarks = ["all by direction"] if self.separate else [f"{differing} by direction"]
+        remarks = remarks if self.by_direction else []
+        if self.only:
+            remarks.append(
+                f"{self.rise} at {'positive' if self.only > 0 else 'negative'} rate only"
+            )
+        return "; ".join([law, *remarks])
+
+    def holds(self, other: "Member") -> bool:
+        """Whether `other` is this law with some parameters at zero or equal by direction.
+
+        Static friction without a curve is the limit of a Stribeck speed of zero.
+        """
+        rise = other.rise in ("", self.rise) or (other.rise == STATIC and self.rise == STRIBECK)
+        named = {STRIBECK if part == STATIC else part for part in self.by_direction}
+        inner = {STRIBECK if part == STATIC else part for part in other.by_direction}
+        if self.only == 0 and other.only and other.rise:
+            inner |= {STRIBECK}
+        side = not other.rise or self.only in (0, other.only)
+        return self != other and rise and side and other.viscous <= self.viscous and inner <= named
+
+
+def all_members(*, both_directions: bool, breakaway: bool) -> tuple[Member, ...]:
+    """All members, the smallest first; `breakaway`: there are torques at rest."""
+    found = []
+    for rise in ("", STATIC, STRIBECK) if breakaway else ("", STRIBECK):
+        for viscous in (False, True):
+            parts = Member(rise, viscous).parts if both_directions else ()
+            sizes = (combinations(parts, k) for k in range(len(parts) + 1))
+            found += [Member(rise, viscous, frozenset(s)) for s in chain.from_iterable(sizes)]
+            if rise and both_directions:
+                others = (frozenset(m.by_direction) for m in found[-(2 ** len(parts)) :])
+                found += [
+                    Member(rise, viscous, s, only)
+                    for s in others
+                    if rise not in s
+                    for only in (1, -1)
+                ]
+            if rise == STRIBECK and both_directions:
+                found.append(Member(rise, viscous, frozenset((*parts, SPEED))))
+    return tuple(sorted(found, key=lambda member: member.size))
+
+
+def columns(member: Member, rate: FloatArray, sign: FloatArray, decay: FloatArray) -> FloatArray:
+    """Columns [..., n, k] of `member` at `rate` [n] in direction `sign` [n] (+1 or -1).
+
+    `decay` [..., n] is the Stribeck curve, 1 at rest. The order is Coulomb, its half difference,
+    rise, viscous; a rise or a viscous part that differs has a column for each direction, so that
+    none of their coefficients is negative in a law that exists.
+    """
+    shape = decay.shape
+    found = [np.broadcast_to(sign, shape)]
+    if COULOMB in member.by_direction:
+        found.append(np.ones(shape))
+    rise = sign * decay * (sign == member.only if member.only else 1.0)
+    for part, column in ((member.rise, rise), (VISCOUS, np.broadcast_to(rate, shape))):
+        if part and part in member.parts:
+            if part in member.by_direction:
+                found += [column * (sign > 0), column * (sign < 0)]
+            else:
+                found.append(column)
+    return np.stack(found, axis=-1)
+
+
+def one_sided(member: Member) -> NDArray[np.bool_]:
+    """Which coefficients of `columns` [k] must not be negative.
+
+    The Coulomb torque beside a rise must not: a negative one would be a static friction that
+    falls below zero. Without a rise its sign is left to the data.
+    """
+    free = [not member.rise] + [True] * (COULOMB in member.by_direction)
+    parts = [part for part in member.parts if part != COULOMB]
+    return ~np.array(free + [False] * sum(1 + (p in member.by_direction) for p in parts))
+
+
+def contrasts(member: Member, direction: int) -> dict[str, FloatArray]:
+    """F_c, F_s and F_v in `direction` (+1 or -1) as weights [k] of the coefficients of `columns`.
+
+    F_s is there with a rise only, F_v with a viscous part only.
+    """
+    weights: list[tuple[str, float]] = [("F_c", 1.0)]
+    if COULOMB in member.by_direction:
+        weights.append(("F_c", float(direction)))
+    for part, name in ((member.rise, "rise"), (VISCOUS, "F_v")):
+        if part and part in member.parts:
+            if part in member.by_direction:
+                weights += [(name, float(direction > 0)), (name, float(direction < 0))]
+            else:
+                there = name == "F_v" or member.only in (0, direction)
+                weights.append((name, float(there)))
+    found = {
+        name: np.array([weight if of == name else 0.0 for of, weight in weights])
+        for name in dict(weights)
+    }
+    if "rise" in found:
+        found["F_s"] = found["F_c"] + found.pop("rise")
+    return found
+
+
+# Neighbouring curves of a scan differ by at most 2/e of this step, 7 % of the rise.
+SCAN_STEP = np.log(10.0) / 24.0
+SMALLEST_PIVOT = np.sqrt(np.finfo(float).eps)  # of a column of unit length: less is dependent
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """A linear fit of `rows` [m] of the points at every one of `speeds` [g], weighted.
+
+    `basis` [g, m, k] is orthonormal, `triangle` [g, k, k] upper triangular, `sound` [g] says where
+    the columns are independent. Without a Stribeck curve g is 1 and the speed NaN.
+    Source: Golub and Pereyra, SIAM J. Numer. Anal. 10 (1973): the projected problem.
+    """
+
+    member: Member
+    rows: NDArray[np.int64]
+    speeds: FloatArray
+    basis: FloatArray
+    triangle: FloatArray
+    sound: NDArray[np.bool_]
+
+    def project(self, torque: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Sums of squares [g, r] and coefficients [g, k, r] for weighted torques [n, r].
+
+        The sum is infinite where the law cannot exist: it is then that of a smaller member.
+        """
+        y = torque[self.rows]
+        along = np.swapaxes(self.basis, 1, 2) @ y
+        square = (y * y).sum(axis=0)
+        # the difference of two squares is known to their rounding
+        rss = np.maximum(square - (along * along).sum(axis=1), np.finfo(float).eps * square)
+        coefficients = self.inverse @ along
+        possible = (coefficients[:, one_sided(self.member)] >= 0.0).all(axis=1)
+        return np.where(possible & self.sound[:, None], rss, np.inf), coefficients
+
+    @cached_property
+    def inverse(self) -> FloatArray:
+        """Inverse [g, k, k] of `triangle`; zero where the columns depend."""
+        safe = np.where(self.sound[:, None, None], self.triangle, np.eye(self.triangle.shape[1]))
+        return np.where(self.sound[:, None, None], np.linalg.inv(safe), 0.0)
+
+    def left_out(self, torque: FloatArray, groups: NDArray[np.int64]) -> FloatArray:
+        """Errors [m] of weighted `torque` [n] predicted from all rows of other `groups` [n].
+
+        The speed is chosen anew each time; the rest follows in closed form from the whole fit.
+        Infinite where a group cannot be left out.
+        """
+        y, own = torque[self.rows], groups[self.rows]
+        whole, _ = self.project(torque[:, None])
+        residual = y - (self.basis @ (np.swapaxes(self.basis, 1, 2) @ y)[:, :, None])[:, :, 0]
+        errors = np.full(len(y), np.inf)
+        for group in np.unique(own):
+            at = np.flatnonzero(own == group)
+            part = self.basis[:, at]
+            rest = np.eye(len(at)) - part @ np.swapaxes(part, 1, 2)
+            sound = np.isfinite(whole[:, 0]) & (np.linalg.det(rest) > SMALLEST_PIVOT)
+            if not sound.any():
+                continue
+            error = np.linalg.solve(rest[sound], residual[sound][:, at, None])[:, :, 0]
+            rss = whole[sound, 0] - (residual[sound][:, at] * error).sum(axis=1)
+            errors[at] = error[np.argmin(rss)]
+        return errors
+
+
+def scan_speeds(rate: FloatArray) -> FloatArray:
+    """Stribeck speeds [g] that points at `rate` [n] in rad/s can show: from the lowest speed,
+    below which a curve touches no point that moves, to the highest, above which it is a parabola.
+    """
+    moving = np.abs(rate[rate != 0.0])
+    low, high = moving.min(), moving.max()
+    return np.geomspace(low, high, 2 + int(np.log(high / low) / SCAN_STEP))
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """Where points were taken, and how they are weighted.
+
+    `rate` [n] in rad/s, `sign` [n], `weight` [n]: square roots of the weights of least squares.
+    """
+
+    rate: FloatArray
+    sign: FloatArray
+    weight: FloatArray
+
+    def block(self, member: Member, rows: NDArray[np.int64], speeds: FloatArray) -> Block:
+        """The fit of `member` to `rows` [m] at `speeds` [g] in rad/s."""
+        rate, sign = self.rate[rows], self.sign[rows]
+        if member.rise == STRIBECK:
+            decay = np.exp(-((rate / speeds[:, None]) ** 2))
+        else:
+            speeds, decay = np.full(1, np.nan), (rate == 0.0)[None].astype(float)
+        table = columns(member, rate, sign, decay) * self.weight[rows][:, None]
+        count, size = table.shape[1:]
+        if count < size:
+            none = np.zeros(len(speeds), dtype=bool)
+            triangle = np.broadcast_to(np.eye(size), (len(speeds), size, size))
+            return Block(member, rows, speeds, np.zeros_like(table), triangle, none)
+        basis, triangle = np.linalg.qr(table)
+        length = np.linalg.norm(table, axis=1)
+        pivots = np.abs(np.diagonal(triangle, axis1=1, axis2=2))
+        sound = (pivots > SMALLEST_PIVOT * length).all(axis=1)
+        return Block(member, rows, speeds, basis, triangle, sound)
+
+    def blocks(self, member: Member, speeds: FloatArray | None = None) -> tuple[Block, ...]:
+        """One fit of all points, or one of each direction where these share nothing."""
+        if speeds is None:
+            speeds = scan_speeds(self.rate)
+        if not member.separate:
+            return (self.block(member, np.arange(len(self.rate)), speeds),)
+        alone = Member(member.rise, member.viscous)
+        return tuple(self.block(alone, np.flatnonzero(self.sign == s), speeds) for s in (1, -1))
+
+
+def least_rss(blocks: tuple[Block, ...], torque: FloatArray) -> FloatArray:
+    """Least sums of squares [r] over the scan, for weighted torques [n, r]; infinite for none."""
+    return np.sum([block.project(torque)[0].min(axis=0) for block in blocks], axis=0)
+
+
+def left_out_errors(
+    blocks: tuple[Block, ...], torque: FloatArray, groups: NDArray[np.int64]
+) -> FloatArray:
+    """Errors [n] of weighted `torque` [n], each group of `groups` [n] predicted from the others."""
+    errors = np.full(len(torque), np.inf)
+    for block in blocks:
+        errors[block.rows] = block.left_out(torque, groups)
+    return errors
+
 
 REPLICATES = 999  # of a Monte Carlo test; Davison and Hinkley, Bootstrap Methods (1997), 4.2.5
 # Of one test over all larger laws; at 5 % chance alone would refuse the true law in 1 map of 20.

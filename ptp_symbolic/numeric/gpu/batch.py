@@ -12,11 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.gpu.drives import Drives, drives_of
-from ptp_symbolic.numeric.gpu.explicit import Accuracy
-from ptp_symbolic.numeric.gpu.machine import Layout, Runs
+from ptp_symbolic.numeric.gpu.kernels import Accuracy
+from ptp_symbolic.numeric.gpu.machine import Drives, Layout, Runs, drives_of
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.batch import IMPOSSIBLE, impossible
 from ptp_symbolic.numeric.simulation.buffers import new_watch
 from ptp_symbolic.numeric.simulation.integration import (
     EXPLICIT,
@@ -25,6 +23,7 @@ from ptp_symbolic.numeric.simulation.integration import (
     refuse_start,
 )
 from ptp_symbolic.numeric.simulation.kernels.records import DONE, EXHAUSTED
+from ptp_symbolic.numeric.simulation.lanes import IMPOSSIBLE, impossible
 from ptp_symbolic.numeric.simulation.run import FIXED_STEP, refuse_failure
 from ptp_symbolic.numeric.simulation.signals.inputs import (
     InputSignal,

@@ -3,6 +3,8 @@
 The joint angles are measured; what is behind a gap follows them: the torque that a joint lacks is
 what its shaft transmits, its sign tells the face that is touched, and the twist follows from the
 shaft's own law. Winding currents, temperatures and other states of effects are integrated along.
+
+Joint angles behind sensors that err: where they show what was measured.
 """
 
 from typing import Any, NamedTuple
@@ -10,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import njit
 
+from ptp_symbolic.numeric.identify.constants import ROUNDS
 from ptp_symbolic.numeric.runtime.element_layout import contact_count, contact_guards, contact_modes
 from ptp_symbolic.numeric.simulation.kernels.calls import call
 
@@ -278,3 +281,29 @@ def torques_along(addresses, layout, motion, p, resting, ahead, ahead_rate, face
                     row = layout.gear_row[a]
                     slopes[k, a, j] += (r[row] - still[row]) / QUOTIENT
     return lacking, inertia, slopes
+
+
+NEXT_TO_NONE = float(np.sqrt(np.finfo(float).eps))  # rad; of an angle: the root of rounding
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def angles_behind_sensors(addresses, layout, shown, time, measured, inputs, p, signals):
+    """Joint angles [k, na] in rad at which the sensors at p [np] show what was `measured` [k, na];
+    `shown` [na] is the place of every angle among the `signals` outputs. Fixed-point iteration:
+    errors of sensors are small and smooth.
+    """
+    angles = measured.copy()
+    x, y = np.zeros(layout.states), np.zeros(signals)
+    for k in range(len(time)):
+        for _ in range(ROUNDS):
+            left = 0.0
+            for a in range(len(shown)):
+                x[layout.angle[a]] = angles[k, a]
+            call(addresses[2], time[k], x, inputs[k], p, y)
+            for a in range(len(shown)):
+                error = measured[k, a] - y[shown[a]]
+                angles[k, a] += error
+                left = max(left, abs(error))
+            if left <= NEXT_TO_NONE:
+                break
+    return angles

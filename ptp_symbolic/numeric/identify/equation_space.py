@@ -5,11 +5,15 @@ function (see `weak_form`), or the measured minus the integrated value of a furt
 are nearly linear in the parameters, so that far starts and many candidates cost next to nothing.
 Rows whose window holds a joint at rest or a change of the touched face are left out: there friction
 and contact are set-valued.
+
+What is costly to make and may be asked for again.
 """
 
-from collections.abc import Sequence
+from collections import OrderedDict
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +27,7 @@ from ptp_symbolic.numeric.identify.constants import MOST, SAME
 from ptp_symbolic.numeric.identify.equation_rows import (
     RunRows,
     every_row,
+    resting_rates,
     rows_that_count,
     rows_without,
 )
@@ -34,7 +39,6 @@ from ptp_symbolic.numeric.identify.measured_motion import (
     measured_motion,
     states_along,
 )
-from ptp_symbolic.numeric.identify.recent import Recent
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.sample_averages import (
     cell_averages,
@@ -43,11 +47,36 @@ from ptp_symbolic.numeric.identify.weak_form import averages
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.inputs import delays_of
 
+BoolArray = NDArray[np.bool_]
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
+
+Key = TypeVar("Key", bound=Hashable)
+Kept = TypeVar("Kept")
+
+
+class Recent(Generic[Key, Kept]):
+    """The values that were made last, by key; threads may share it."""
+
+    def __init__(self) -> None:
+        self._values: OrderedDict[Key, Kept] = OrderedDict()
+
+    def of(self, key: Key, made: Callable[[], Kept], most: int) -> Kept:
+        """The value of a key, `made` where it is not kept; of more than `most` the oldest go."""
+        found = self._values.get(key)
+        if found is None:
+            found = self._values[key] = made()
+        while len(self._values) > most:
+            self._values.popitem(last=False)
+        return found
+
+    def clear(self) -> None:
+        """Keep nothing."""
+        self._values.clear()
+
+
 Torques = tuple[FloatArray, FloatArray, FloatArray]  # see `torques_along`
-Key = tuple[int, bytes]  # run, what changes or is added
+Change = tuple[int, bytes]  # run, what changes or is added
 
 
 @dataclass(eq=False)
@@ -71,9 +100,9 @@ class EquationSpace:
     moving: BoolArray
     acting: BoolArray
     rows_of: tuple[RunRows, ...] = ()
-    _motions: Recent[Key, MeasuredMotion] = field(default_factory=Recent, init=False, repr=False)
-    _states: Recent[Key, FurtherStates] = field(default_factory=Recent, init=False, repr=False)
-    _inputs: Recent[Key, FloatArray] = field(default_factory=Recent, init=False, repr=False)
+    _motions: Recent[Change, MeasuredMotion] = field(default_factory=Recent, init=False, repr=False)
+    _states: Recent[Change, FurtherStates] = field(default_factory=Recent, init=False, repr=False)
+    _inputs: Recent[Change, FloatArray] = field(default_factory=Recent, init=False, repr=False)
 
     @property
     def equations(self) -> int:
@@ -294,3 +323,55 @@ class EquationSpace:
                 shifted[:, j] = SAME
                 result[:, j] = (self._torques(0, p, shifted, part)[2][0][middle] - here) / SAME
         return result
+
+
+class RowMotion(NamedTuple):
+    """Motion of an axis at its rows [n]: angle in rad, rate in rad/s, and the time in s since the
+    joint turned back, nan before it first did.
+    """
+
+    angle: FloatArray
+    rate: FloatArray
+    since_reversal: FloatArray
+
+
+def row_motion(space: EquationSpace, axis: int) -> RowMotion:
+    """The measured motion of `axis` at the rows of its own equation: the angle as it was measured,
+    the rate as a central difference over a window.
+    """
+    equation, number, time = space.labels()
+    own = equation == axis
+    found = np.full((3, int(own.sum())), np.nan)
+    for k, run in enumerate(space.runs):
+        here = number[own] == k
+        if here.any():
+            found[:, here] = _along(space, run, axis, time[own][here])
+    return RowMotion(*found)
+
+
+def _along(space: EquationSpace, run: Run, axis: int, time: FloatArray) -> FloatArray:
+    """Angle, rate and time since reversal [3, n] of one run at `time` [n]."""
+    column = run.signals.index(f"theta_{space.model.module.AXES[axis]}")
+    measured = run.measured[:, column]
+    h = space.half_width
+
+    def rate_at(at: FloatArray) -> FloatArray:
+        ahead, behind = (np.interp(at + d, run.time, measured) for d in (h, -h))
+        return np.asarray((ahead - behind) / (2.0 * h))
+
+    rate = rate_at(run.time)
+    rate[np.abs(rate) <= _slowest(space, run, column)] = 0.0
+    moving = np.flatnonzero(rate)
+    turns = np.flatnonzero(np.diff(np.sign(rate[moving])) != 0.0)
+    reversals = run.time[moving[turns + 1]]
+    last = np.searchsorted(reversals, time, side="right") - 1
+    since = np.full(len(time), np.nan)
+    since[last >= 0] = time[last >= 0] - reversals[last[last >= 0]]
+    return np.stack([np.interp(time, run.time, measured), rate_at(time), since])
+
+
+def _slowest(space: EquationSpace, run: Run, column: int) -> float:
+    """The rate in rad/s that noise and rounding of a signal give a joint at rest."""
+    period = float(np.median(np.diff(run.time)))
+    noise = 1.0 / run.weight[[column]]
+    return float(resting_rates(run.counts[[column]], noise, period, space.half_width)[0])

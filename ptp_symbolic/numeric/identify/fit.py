@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 from ptp_symbolic.numeric.identify.constants import NOTHING
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, slopes, to_search
 from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance
-from ptp_symbolic.numeric.identify.least_squares import minimise
+from ptp_symbolic.numeric.identify.least_squares import Shift, minimise
 from ptp_symbolic.numeric.identify.requirements import nearest_possible
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_starts import fitted_starts, starts_in_place
-from ptp_symbolic.numeric.identify.secants import Shift
 from ptp_symbolic.numeric.identify.simulations import (
     DEFAULT_TOLERANCE,
     Effort,

@@ -5,32 +5,171 @@ angle may last for a whole run. The covariance is that of a jackknife over a few
 time, the unknown starts projected out. Intervals never get narrower than those of white noise, as
 large as declared or as what is left, or of noise with the colour of what is left, beside the noise
 of the inputs as replays carry it to the outputs.
+
+Errors of a fit under noise that has the same colour everywhere.
+
+What few samples tell, as those about one breakaway, no block of time can be left out to judge. The
+covariance of the residual over all samples says how far such a sum scatters.
+
+Values that differ from log to log.
+
+Blocks of time within logs tell how well one value suits them all. They do not tell how far the
+machine of another day is from it, whose friction is that of another temperature: where logs differ
+by more than blocks within each make likely, every log counts as one observation.
+
+The joint confidence region of the values of a fit, and the values in it that suit other runs.
 """
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
+from scipy import optimize, signal, stats
 
 from ptp_symbolic.numeric.data.remarks import FEW_COUNTS
-from ptp_symbolic.numeric.identify.between_logs import reach_between_logs
 from ptp_symbolic.numeric.identify.blocks import (
+    ELSEWHERE,
+    autocovariance,
+    block_labels,
     degrees_of_freedom,
+    inverse_root,
     jackknife_covariance,
     leave_blocks_out,
     long_blocks,
     longest_block,
 )
-from ptp_symbolic.numeric.identify.coloured_errors import coloured_variances
-from ptp_symbolic.numeric.identify.constants import NOTHING, SAME
+from ptp_symbolic.numeric.identify.constants import (
+    FALSE_ALARM,
+    FEWEST_BLOCKS,
+    NOTHING,
+    SAME,
+    TEST_ALARM,
+)
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, slopes, to_search, wrapped
 from ptp_symbolic.numeric.identify.fit import Fit
-from ptp_symbolic.numeric.identify.run_groups import by_log
+from ptp_symbolic.numeric.identify.run import by_log
 
-FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+def coloured_variances(
+    residuals: Sequence[FloatArray], influences: Sequence[FloatArray]
+) -> FloatArray:
+    """Variances [nf] of sums of the samples of `residuals` [n, ny], by log, each sample times its
+    `influences` [n * ny, nf], where every signal is stationary: w' R w, summed over logs and
+    signals, with w a column of influences and R the matrix of `autocovariance` by distance in time.
+    """
+    ny = residuals[0].shape[1]
+    total = np.zeros(influences[0].shape[1])
+    for column in range(ny):
+        half = autocovariance([log[:, column] for log in residuals])
+        kernel = np.concatenate([half[:0:-1], half])[:, None]
+        for influence in influences:
+            own = influence[column::ny]
+            total += np.sum(own * signal.oaconvolve(own, kernel, "same", axes=0), axis=0)
+    return total
+
+
+def reach_between_logs(logs: Sequence[tuple[FloatArray, FloatArray]], signals: int) -> FloatArray:
+    """Half widths [nf] of 95 % intervals of the mean over `logs`, by a jackknife over these (Bell
+    and McCaffrey, 2002) with Student's distribution; from the residual [k * signals] of every log
+    and its derivatives [k * signals, nf] by the parameters, at their common optimum.
+
+    Zero where logs do not differ clearly (see `chance_of_scatter`), and for all parameters where
+    there are fewer than three, or where one of them alone tells some combination of parameters:
+    without it, the errors of all others would show.
+    """
+    nothing = np.zeros(logs[0][1].shape[1])
+    if len(logs) < 3:
+        return nothing
+    label = np.repeat(np.arange(len(logs)), [len(r) for r, _ in logs])
+    residual, columns = (np.concatenate(parts) for parts in zip(*logs, strict=True))
+    left_out = leave_blocks_out(residual, columns, label)
+    if np.max(left_out.leverage, initial=0.0) > 1.0 - ELSEWHERE:
+        return nothing
+    quantile = stats.t.ppf(0.975, degrees_of_freedom(left_out.shifts))
+    reach = quantile * np.sqrt(np.diag(jackknife_covariance(left_out.shifts)))
+    return np.where(chance_of_scatter(logs, signals) < FALSE_ALARM, reach, 0.0)
+
+
+def chance_of_scatter(logs: Sequence[tuple[FloatArray, FloatArray]], signals: int) -> FloatArray:
+    """The chance [nf] that logs differ so much, or more, in every parameter where they are alike.
+
+    How much each sample moves a parameter is summed over every log, and, once each log has a value
+    of its own, over blocks within: an analysis of variance (Fisher, 1925). A sum of white noise has
+    a variance in proportion to the information in its log, or block, less its part in the value
+    that was taken out. Blocks are long enough to be independent; unequal ones have the degrees of
+    freedom of so many equal ones (Satterthwaite, 1946).
+    """
+    root = inverse_root(np.vstack([c for _, c in logs]))
+    inverse = root @ root.T
+    lengths = [len(r) // signals for r, _ in logs]
+    labels = block_labels(lengths, sum(lengths) / (2 * FEWEST_BLOCKS))
+    between, sums, expected = np.zeros(len(inverse)), [], []
+    for (residual, columns), label in zip(logs, labels, strict=True):
+        influence = columns @ inverse
+        moved, known = residual @ influence, np.maximum(np.sum(influence**2, axis=0), 1e-300)
+        rest = influence * (residual[:, None] - influence * moved / known)
+        parts = np.repeat(label - label[0], signals)
+        of_block = _sums(influence**2, parts)
+        between += moved**2 / known
+        sums.append(_sums(rest, parts))
+        expected.append(of_block * (1.0 - of_block / known))
+    variances = np.maximum(np.concatenate(expected), 0.0)
+    whole = np.maximum(np.sum(variances, axis=0), 1e-300)
+    equal = whole**2 / np.maximum(np.sum(variances**2, axis=0), 1e-300)
+    free = len(logs) - 1, equal - len(logs)
+    variance = np.sum(np.concatenate(sums) ** 2, axis=0) / whole
+    ratio = between / free[0] / np.maximum(variance, 1e-300)
+    return np.where(free[1] < 1.0, 1.0, stats.f.sf(ratio, free[0], np.maximum(free[1], 1.0)))
+
+
+def _sums(columns: FloatArray, parts: IntArray) -> FloatArray:
+    """Sums [parts, nf] of the rows of `columns` [k, nf] in each of the `parts` [k]."""
+    return np.array([np.bincount(parts, column) for column in columns.T]).T
+
+
+def joint_region(fit: Fit) -> FloatArray:
+    """The ellipsoid [nf, seen] that holds the true search coordinates of a finished fit with a
+    chance of 99 %: the fitted ones plus this matrix times any vector of length one at most
+    (Scheffe, 1953). An axis of which few blocks tell is widened as Student's t is at 99 %.
+    Directions that the data do not see are left out.
+
+    Axes count as uncorrelated, as they are beside white noise. Were all k of them the same normal
+    number z, as where one slow mode is left that all follow, the truth would be held where k z^2
+    is below the 99 % quantile of chi squared with k degrees: in 97 % for two, in 87 % for ten.
+    """
+    axes, variances, degrees = axes_of(fit)
+    tail = 0.5 * TEST_ALARM
+    wider = stats.t.isf(tail, degrees) / stats.norm.isf(tail)
+    radius = np.sqrt(stats.chi2.isf(TEST_ALARM, max(axes.shape[1], 1)))
+    return np.asarray(radius * axes * wider * np.sqrt(variances))
+
+
+def closest_in_ball(matrix: FloatArray, target: FloatArray) -> FloatArray:
+    """The vector [n] of length one at most whose image by `matrix` [k, n] is closest to `target`
+    [k]: least squares with a quadratic constraint (Golub and Van Loan, 2013, 6.2.1).
+    """
+    left, sizes, right = np.linalg.svd(matrix, full_matrices=False)
+    largest = max(sizes.max(initial=0.0), 1e-300)
+    seen = sizes > 1e-14 * largest  # below is the rounding of equal columns
+    along, right = (left.T @ target)[seen] / largest, right[seen]
+    sizes = sizes[seen] / largest
+
+    def solution(multiplier: float) -> FloatArray:
+        return sizes * along / (sizes**2 + multiplier)
+
+    def excess(multiplier: float) -> float:
+        return float(np.linalg.norm(solution(multiplier))) - 1.0
+
+    multiplier = 0.0
+    if seen.any() and excess(0.0) > 0.0:
+        enough = 2.0 * float(np.linalg.norm(sizes * along))  # the length is below one half there
+        multiplier = float(optimize.brentq(excess, 0.0, enough, xtol=1e-300, rtol=1e-12))
+    return np.asarray(right.T @ solution(multiplier))
 
 
 @dataclass(frozen=True)

@@ -3,23 +3,156 @@
 Shared parameters phi meet all runs, the start unknowns z of a run meet only that run: the normal
 equations are bordered block diagonal and solved by a Schur complement (Golub and Pereyra, 1973,
 call the elimination variable projection).
+
+The solution of normal equations within the box that one step may reach.
+
+Finite-difference Jacobians, where the derivatives at a point mislead.
+
+Zero-order-hold inputs let a friction break away at one sample or the next: the residual is then a
+staircase of the parameter, and its derivative sees the treads alone. Bounces in a gap that appear
+and vanish do the same. A difference over a finite step sees both.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.identify.bounded_step import box, limited_step, taken
-from ptp_symbolic.numeric.identify.constants import NEARBY, SAME
+from ptp_symbolic.numeric.identify.constants import (
+    LARGEST_STEP,
+    MISLEADING,
+    NEARBY,
+    SAME,
+    STEP,
+    WIDE_STEP,
+)
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
 from ptp_symbolic.numeric.identify.requirements import Allow
 from ptp_symbolic.numeric.identify.robust_loss import Block, loss, robust_tuning, shares
-from ptp_symbolic.numeric.identify.secants import Secants
 
 FloatArray = NDArray[np.float64]
+
+
+SHARE_TO_BOUND = -np.expm1(-LARGEST_STEP)  # of the way there in one step
+
+
+def reach(distance: FloatArray) -> FloatArray:
+    """How far one step may go [nf] towards bounds at `distance` [nf].
+
+    A parameter that one step takes from its start to zero takes the others to where no step leads
+    back: the share is that of an interior point method (Coleman and Li, 1996).
+    """
+    share = np.where(distance > WIDE_STEP, SHARE_TO_BOUND, 1.0)
+    return np.minimum(LARGEST_STEP, share * distance)
+
+
+def box(
+    phi: FloatArray, lower: FloatArray, upper: FloatArray, logarithmic: NDArray[np.bool_] | bool
+) -> tuple[FloatArray, FloatArray]:
+    """How far down and up one step may go [nf] from phi [nf], as `taken` takes it."""
+    down, up = -reach(phi - lower), reach(upper - phi)
+    return (
+        np.where(logarithmic, np.expm1(down), down),
+        np.where(logarithmic, np.expm1(up), up),
+    )
+
+
+def taken(phi: FloatArray, step: FloatArray, logarithmic: NDArray[np.bool_] | bool) -> FloatArray:
+    """The search coordinates after a step [nf], which is straight in the values, whose logarithms
+    some coordinates are: an inertia and the damping beside it trade places along a straight valley,
+    and one that bends allows short steps only.
+    """
+    share = np.where(logarithmic, step, 0.0)
+    return phi + np.where(logarithmic, np.log1p(share), step)
+
+
+def limited_step(
+    matrix: FloatArray, right: FloatArray, size: FloatArray, low: FloatArray, high: FloatArray
+) -> FloatArray:
+    """Solve matrix @ step = right with low <= step <= high [nf]; `size` scales them [nf].
+
+    The one that wants furthest beyond is fixed there and the others solved anew: scaling all alike
+    would let a parameter on its way to zero stop the rest.
+    """
+    step, moves = np.zeros(len(right)), np.ones(len(right), dtype=np.bool_)
+    matrix, right = matrix / np.outer(size, size), right / size
+    while moves.any():
+        rest = right[moves] - matrix[np.ix_(moves, ~moves)] @ (size * step)[~moves]
+        found = np.linalg.lstsq(matrix[np.ix_(moves, moves)], rest, rcond=1e-14)[0]
+        step[moves] = found / size[moves]
+        allowed = np.clip(step, low, high)
+        worst = int(np.argmax(np.abs(step - allowed)))
+        if step[worst] == allowed[worst]:
+            break
+        step[worst] = allowed[worst]
+        moves[worst] = False
+    return step
+
+
+Shift = tuple[int, int]
+Residual = Callable[[int, FloatArray, FloatArray], FloatArray | None]
+
+
+@dataclass(eq=False)
+class Secants:
+    """Replaces misleading columns of the Jacobians by phi [nf] with finite differences.
+
+    `residual(run, phi, z)` simulates one run (None: it failed); `upper` [nf] bounds phi. The first
+    call compares every column of every run, later ones only those that misled, `chosen`; `step` is
+    that of the differences, in search coordinates, or one for each of them [nf].
+    """
+
+    residual: Residual
+    upper: FloatArray
+    executor: Executor | None = None
+    chosen: list[Shift] | None = None
+    step: float | FloatArray = STEP
+
+    def __call__(
+        self, phi: FloatArray, z: Sequence[FloatArray], evaluations: Sequence[Evaluation]
+    ) -> list[Evaluation]:
+        """`evaluations` at (phi, z) with their derivatives by phi refined."""
+        every = [(r, c) for r in range(len(evaluations)) for c in range(len(phi))]
+        shifts = every if self.chosen is None else self.chosen
+        steps = np.broadcast_to(self.step, phi.shape)
+
+        def difference(shift: Shift) -> FloatArray:
+            run, column = shift
+            step = float(steps[column])
+            step = step if phi[column] + step <= self.upper[column] else -step
+            shifted = phi.copy()
+            shifted[column] += step
+            after = self.residual(run, shifted, z[run])
+            if after is None:
+                return evaluations[run].by_parameter[:, column]
+            return (after - evaluations[run].residual) / step
+
+        run_each = self.executor.map if self.executor else map
+        columns = list(run_each(difference, shifts))
+        if self.chosen is None:
+            self.chosen = [
+                (r, c)
+                for (r, c), column in zip(shifts, columns, strict=True)
+                if _misleads(evaluations[r].by_parameter[:, c], column)
+            ]
+        return _replaced(evaluations, shifts, columns)
+
+
+def _misleads(tangent: FloatArray, secant: FloatArray) -> bool:
+    return bool(np.linalg.norm(tangent - secant) > MISLEADING * np.linalg.norm(secant))
+
+
+def _replaced(
+    evaluations: Sequence[Evaluation], shifts: Sequence[Shift], columns: Sequence[FloatArray]
+) -> list[Evaluation]:
+    jacobians = [e.by_parameter.copy() for e in evaluations]
+    for (run, column), values in zip(shifts, columns, strict=True):
+        jacobians[run][:, column] = values
+    return [replace(e, by_parameter=j) for e, j in zip(evaluations, jacobians, strict=True)]
+
 
 BIGGEST = np.reciprocal(np.finfo(float).eps)  # beyond, a simulation has told nothing
 

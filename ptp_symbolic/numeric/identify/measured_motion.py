@@ -1,5 +1,7 @@
 """The measured motion of a run: angles without the errors of sensors, smoothed and averaged; and
 further states along it.
+
+How a joint moved at the rows of the equation space: angle, rate, time since it turned back.
 """
 
 from collections.abc import Sequence
@@ -10,9 +12,9 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.along_motion import (
     Motion,
+    angles_behind_sensors,
     further_states,
 )
-from ptp_symbolic.numeric.identify.behind_sensors import angles_behind_sensors
 from ptp_symbolic.numeric.identify.equation_rows import RunRows
 from ptp_symbolic.numeric.identify.layout import Layout, equation_addresses
 from ptp_symbolic.numeric.identify.run import Run

@@ -4,8 +4,33 @@ Differences of high order of a signal remove its smooth motion and keep its whit
 a first size. What a model leaves shows the colour: its spectrum above the frequencies of the motion
 is that of a first-order autoregression plus white noise, whose likelihood (Whittle, 1953) gives the
 whole variance, also below. Before any fit, only the upper half of the spectrum is free of motion.
+
+Whether residuals scatter as noise does, which does not know what the machine does.
+
+What a model lacks is small where the machine rests and large where it turns, noise of a sensor is
+of one size. Mean squares of stretches of a stationary series are like those of some independent
+normal numbers, as many as its autocorrelation says (Bartlett, 1946).
+
+Whether slow noise of a signal is there where the machine rests.
+
+Noise of a sensor does not know what the machine does: where the model rests, the signal shows it
+alone. What a model lacks is slow, too, but stands still there.
+
+How well a machine repeats itself: what differs between runs with equal inputs.
+
+No model that answers to its inputs alone can tell such runs apart, so that their difference is a
+floor that needs no model: noise, and all that the machine does not do alike twice.
+
+Innovations: what is left of residuals that are correlated in time once each is predicted from
+those before it.
+
+Where a model leaves more than noise, its residuals are coloured, and least squares credits an
+effect with whatever slow drift it can follow. In the innovations of what is left every frequency
+counts by how well it is known: generalized least squares (Aitken, 1935), with the colour of an
+autoregression (Yule, 1927; Walker, 1931), its order by Akaike's criterion (1974).
 """
 
+import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -14,20 +39,68 @@ from math import comb
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
-from scipy import optimize, stats
+from scipy import linalg, optimize, signal, stats
 
 from ptp_symbolic.numeric.identify.constants import (
+    ABOVE_NOISE,
     DEVIATIONS,
     FAR,
+    FEWEST_BLOCKS,
+    LAGS,
     LEAST_CYCLES,
+    MATERIAL,
+    NOTHING,
     ORDER,
     ROUNDS,
+    SAME,
     SEGMENT,
     TEST_ALARM,
 )
-from ptp_symbolic.numeric.identify.steady_noise import is_steady
+from ptp_symbolic.numeric.identify.run import Run
 
 FloatArray = NDArray[np.float64]
+
+
+def is_steady(series: Sequence[FloatArray], pole: float, share: float, least: float) -> bool:
+    """Whether residual `series` [n] may be noise of one size, a `share` of whose variance is an
+    autoregression with `pole`, the rest white: the upper quartile of the rms of their stretches
+    lies over the lower one by no more than ABOVE_NOISE times what such noise shows, or by what
+    chance adds to that. A few bursts change no quartile; stretches below the `least` noise count as
+    that, for a machine at rest may show none. True where stretches are too few.
+    """
+    squares = [
+        float(np.mean(values[first : first + SEGMENT] ** 2))
+        for values in series
+        for first in range(0, len(values) - SEGMENT + 1, SEGMENT)
+    ]
+    if len(squares) < FEWEST_BLOCKS:
+        return True
+    low, high = np.quantile(np.log(np.maximum(squares, least**2)), (0.25, 0.75))
+    usual, deviation = _spread(degrees(pole, share), len(squares))
+    more = float(high - low) - usual
+    return more <= max(2.0 * np.log(ABOVE_NOISE), FAR * deviation)
+
+
+def degrees(pole: float, share: float) -> float:
+    """Independent normal numbers in a stretch whose mean square scatters as that of the noise."""
+    lag = np.arange(1, SEGMENT)
+    correlation = share * pole**lag
+    return float(SEGMENT / (1.0 + 2.0 * np.sum((1.0 - lag / SEGMENT) * correlation**2)))
+
+
+def _spread(freedom: float, count: int) -> tuple[float, float]:
+    """Distance of the quartiles of the logarithm of a mean square with so many degrees of freedom,
+    and its standard deviation in samples of `count` (Cramer, 1946, 28.5).
+    """
+    below, above = 0.25, 0.75
+    places = stats.chi2.ppf((below, above), freedom)
+    density = stats.chi2.pdf(places, freedom) * places
+    variance = (
+        below * (1.0 - below) / density[0] ** 2
+        + above * (1.0 - above) / density[1] ** 2
+        - 2.0 * below * (1.0 - above) / (density[0] * density[1])
+    )
+    return float(np.log(places[1] / places[0])), float(np.sqrt(variance / count))
 
 
 def _poles() -> tuple[float, ...]:
@@ -285,3 +358,136 @@ def _profiled(power: FloatArray, pole: float, least: float, degrees: float) -> t
 def _likelihood(power: FloatArray, model: FloatArray, degrees: float) -> float:
     """Whittle's log likelihood of a mean periodogram with so many `degrees` of freedom."""
     return -0.5 * degrees * float(np.sum(np.log(model) + power / model))
+
+
+def is_missed_at_rest(
+    series: Sequence[FloatArray], simulated: Sequence[FloatArray], slow: float, pole: float
+) -> bool:
+    """Whether residual `series` [n] hold less slow noise where the `simulated` signals [n], in the
+    same unit, stand still than they would if noise of the standard deviation `slow`, as an
+    autoregression with `pole` has it, went on there; False where they hardly stand still.
+
+    Their squares about the mean of each stretch, less those of white noise by its differences (in
+    which a part of the slow noise is), are compared with what would go on at the largest pole that
+    is tried. That varies as n (1 - a^2) / (1 + a^2) - 1 independent normal numbers (Bartlett,
+    1946), and the squares of white noise miss those of its differences by what `_spread_at_rest`
+    says: both are allowed for at 99 %.
+    """
+    seen = (slow / hidden_from_differences(pole)) ** 2
+    slowest, found, expected, degrees, variance = POLES[-1], 0.0, 0.0, 0.0, 0.0
+    for residual, motion in zip(series, simulated, strict=True):
+        for first, last in stretches_at_rest(motion):
+            rest = residual[first:last]
+            n, white = len(rest), max(float(np.mean(differences(rest) ** 2)) - seen, 0.0)
+            found += float(np.sum((rest - rest.mean()) ** 2)) - (n - 1) * white
+            variance += n * max(white, float(np.var(rest))) ** 2
+            expected += slow**2 * n * (1.0 - _kept_in_mean(slowest, n))
+            degrees += max(n * (1.0 - slowest**2) / (1.0 + slowest**2) - 1.0, 0.0)
+    if degrees == 0.0:
+        return False
+    least = expected * float(stats.chi2.ppf(TEST_ALARM, degrees)) / degrees
+    least -= float(stats.norm.isf(TEST_ALARM)) * np.sqrt(_spread_at_rest() * variance)
+    return least > 0.0 and found < least
+
+
+def _spread_at_rest() -> float:
+    """Variance, per sample, of the sum of squares of white noise of 1 less that of its differences:
+    twice the sum of squares of the autocorrelation of these, less 2.
+    """
+    lag = [comb(2 * ORDER, ORDER - k) / comb(2 * ORDER, ORDER) for k in range(1, ORDER + 1)]
+    return 4.0 * float(np.sum(np.square(lag)))
+
+
+def stretches_at_rest(signal: FloatArray) -> list[tuple[int, int]]:
+    """First sample, and the one after the last, of all stretches of at least SEGMENT in which a
+    simulated `signal` [n], in units of its noise, does not move.
+    """
+    still = np.concatenate([[False], np.abs(np.diff(signal)) <= SAME / SEGMENT, [False]])
+    edges = np.flatnonzero(np.diff(still.astype(np.int8)))
+    return [
+        (int(first), int(last) + 1)
+        for first, last in edges.reshape(-1, 2)
+        if last + 1 - first >= SEGMENT
+    ]
+
+
+def _kept_in_mean(pole: float, length: int) -> float:
+    """Variance of the mean of an autoregression of variance 1 over a stretch."""
+    lag = np.arange(1, length)
+    return float((1.0 + 2.0 * np.sum((1.0 - lag / length) * pole**lag)) / length)
+
+
+@dataclass(frozen=True, eq=False)
+class Repeatability:
+    """Standard deviation [ny] of one run, from the differences of two with equal inputs, in the
+    units of the signals, and the `names` of such runs, in pairs.
+    """
+
+    rms: FloatArray
+    names: tuple[tuple[str, str], ...]
+
+
+def repeatability(runs: Sequence[Run]) -> Repeatability | None:
+    """The repeatability that whole `runs` show; None where no two have equal inputs and starts.
+
+    Inputs are equal where they differ by no more than their noise, and by little beside what they
+    vary; starts where they differ by less than FAR standard deviations of the signal.
+    """
+    pairs = [(a, b) for a, b in itertools.combinations(runs, 2) if _alike(a, b)]
+    if not pairs:
+        return None
+    squares = np.vstack([0.5 * (a.measured - b.measured) ** 2 for a, b in pairs])
+    return Repeatability(
+        np.sqrt(np.mean(squares, axis=0)), tuple((a.name, b.name) for a, b in pairs)
+    )
+
+
+def _alike(a: Run, b: Run) -> bool:
+    """Whether two runs have the same times, the same inputs and the same start."""
+    if len(a.time) != len(b.time):
+        return False
+    period = float(np.median(np.diff(a.time)))
+    if np.max(np.abs((a.time - a.time[0]) - (b.time - b.time[0]))) > 0.5 * period:
+        return False
+    for one, other in zip(a.held_inputs.T, b.held_inputs.T, strict=True):
+        noise = ABOVE_NOISE * np.hypot(white_noise(one, a.time), white_noise(other, b.time))
+        apart = float(np.sqrt(np.mean((one - other) ** 2)))
+        if apart > min(noise, MATERIAL * float(np.std(one))) + NOTHING * np.max(np.abs(one)):
+            return False
+    far = FAR * np.sqrt(2.0) / a.weight
+    return bool(np.all(np.abs(a.measured[0] - b.measured[0]) <= far))
+
+
+def prediction_error_filter(series: Sequence[FloatArray]) -> FloatArray:
+    """Coefficients [order + 1], the first 1, whose product with a sample and those before it leaves
+    its innovation, for stationary `series` [n] of one kind and of mean zero; those too short for
+    the longest filter tell nothing.
+    """
+    most = min(LAGS, max(len(s) for s in series) // FEWEST_BLOCKS)
+    series = [s for s in series if len(s) > most]
+    n = sum(len(s) for s in series)
+    covariance = np.array(
+        [sum(float(s[k:] @ s[: len(s) - k]) for s in series) / n for k in range(most + 1)]
+    )
+    covariance[0] *= 1.0 + NOTHING
+    best, found = np.inf, np.ones(1)
+    for order in range(most + 1 if covariance[0] > 0.0 else 0):
+        before = covariance[1 : order + 1]
+        weights = linalg.solve_toeplitz(covariance[:order], before) if order else np.zeros(0)
+        left = float(covariance[0] - weights @ before)
+        criterion = n * np.log(max(left, NOTHING * covariance[0])) + 2.0 * order
+        if criterion < best:
+            best, found = criterion, np.concatenate([[1.0], -weights])
+    return found
+
+
+def innovations(columns: FloatArray, filters: Sequence[FloatArray]) -> FloatArray:
+    """Residuals or derivatives `columns` [k * ny, c] of a run, those of each signal through its
+    filter of `filters`; zero in the first samples, which the longest of them needs.
+    """
+    table = columns.reshape(-1, len(filters), columns.shape[1])
+    found = np.zeros_like(table)
+    first = max(len(f) for f in filters) - 1
+    for k, coefficients in enumerate(filters):
+        found[first:, k] = signal.lfilter(coefficients, [1.0], table[:, k], axis=0)[first:]
+    return found.reshape(columns.shape)

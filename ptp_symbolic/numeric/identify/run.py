@@ -1,24 +1,127 @@
-"""A run prepared for fitting: inputs as tables, measured signals with weights, unknown starts."""
+"""A run prepared for fitting: inputs as tables, measured signals with weights, unknown starts.
 
+Rates that are measured without the angle: possible where nothing depends on the angle.
+
+The rate of a joint at the first sample of a run or window, from the angles around it.
+
+A run with other inputs: noisy, silent, averaged.
+
+Runs and windows together: which are of one log, and how long each is.
+"""
+
+import itertools
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.identify.constants import (
     ANYWHERE,
+    DEVIATIONS,
     FAR,
     LEAST_START,
+    ROUNDING,
     START_SPAN,
 )
-from ptp_symbolic.numeric.identify.first_rate import Around, first_rate
-from ptp_symbolic.numeric.identify.rate_signals import has_angle
 from ptp_symbolic.numeric.identify.work import Work
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
+from ptp_symbolic.numeric.simulation.signals.inputs import InputTable, stack, table
 
 FloatArray = NDArray[np.float64]
+
+
+def has_angle(signals: Collection[str], rate: str) -> bool:
+    """Whether the angle of a joint is among the `signals` beside its `rate`, omega_<axis>."""
+    return rate.replace("omega_", "theta_", 1) in signals
+
+
+def refuse_unseen_angles(model: Model, signals: Collection[str]) -> None:
+    """Raise InputError where an axis of `model` has its rate among `signals` and not its angle,
+    though the angle acts on the motion at the default parameters: a run could begin anywhere.
+    """
+    states = list(model.state_names)
+    at_zero, still = np.zeros(len(states)), np.zeros(len(model.input_names))
+    p = model.parameter_vector()
+    for axis in model.module.AXES:
+        if f"omega_{axis}" not in signals or has_angle(signals, f"omega_{axis}"):
+            continue
+        turned = at_zero.copy()
+        for name in (f"theta_{axis}", f"theta_gear_{axis}"):
+            if name in states:
+                turned[states.index(name)] = 1.0
+        before, after = (model.rhs(0.0, x, still, p) for x in (at_zero, turned))
+        if not np.allclose(before, after, rtol=1e-9, atol=1e-12):
+            raise InputError(
+                f"Axis '{axis}' has a rate and no angle among its signals, and its motion depends"
+                f" on the angle; measure the angle too and declare [signals.theta_{axis}]."
+            )
+
+
+@dataclass(frozen=True, eq=False)
+class Around:
+    """The whole log of a window: time [n] in s and measured [n, ny], and its `first` sample; of a
+    run the log is the run itself.
+    """
+
+    time: FloatArray
+    measured: FloatArray
+    first: int
+
+
+def first_rate(around: Around, column: int, sigma: float, count: float) -> tuple[float, float]:
+    """Rate at the first sample and its standard deviation (rad/s or m/s), from an angle whose noise
+    is `sigma`, rounding of a `count` (nan: none) included.
+
+    A local parabola gives it, over the longest span up to a tenth of a second that agrees with all
+    shorter ones: where friction lets go, a longer one bends the wrong way (intersection of
+    confidence intervals: Goldenshluger and Nemirovski, 1997). Its error is that of the noise, and
+    what a cubic tells otherwise.
+    """
+    time = around.time - around.time[around.first]
+    low, high, found = -np.inf, np.inf, (0.0, np.inf)
+    for part in _spans(time, around.first):
+        values = around.measured[part, column]
+        rate, noise = _rate_over(time[part], values, 2, sigma, count)
+        other, _ = _rate_over(time[part], values, 3, sigma, count)
+        error = float(np.hypot(noise, other - rate))
+        low = max(low, rate - DEVIATIONS * error)
+        high = min(high, rate + DEVIATIONS * error)
+        if low > high:
+            break
+        found = rate, error
+    return found
+
+
+def _spans(time: FloatArray, first: int) -> list[slice]:
+    """Samples around the first one, or after it where nothing comes before; each span is twice as
+    long as the one before it, the last one START_SPAN.
+    """
+    ahead = int(np.searchsorted(time, START_SPAN if first == 0 else 0.5 * START_SPAN)) - first
+    least = LEAST_START if first == 0 else LEAST_START // 2
+    doubled = itertools.takewhile(lambda n: n < ahead, (least * 2**k for k in itertools.count()))
+    lengths = [*doubled, max(least, ahead)]
+    if first == 0:
+        return [slice(0, n) for n in lengths]
+    return [slice(max(0, first - n), first + n + 1) for n in lengths]
+
+
+def _rate_over(
+    time: FloatArray, values: FloatArray, degree: int, sigma: float, count: float
+) -> tuple[float, float]:
+    """Rate at time zero by a polynomial, and its standard deviation: noise as if white, rounding as
+    if it were the same in half of the samples.
+    """
+    longest = float(np.max(np.abs(time)))
+    columns = np.vander(time / longest, degree + 1, increasing=True)
+    inverse = np.linalg.pinv(columns)
+    rate = float(inverse[1] @ values) / longest
+    rounding = float(np.nan_to_num(count)) * ROUNDING
+    white = np.sqrt(max(sigma**2 - rounding**2, 0.0)) * float(np.linalg.norm(inverse[1]))
+    return rate, float(np.hypot(white, 2.0 * rounding)) / longest
+
 
 WINDOW = "#"  # in the name of a window, between that of its log and its number
 
@@ -220,3 +323,27 @@ def _unknown(
     tangent = np.zeros(len(states))
     tangent[[states.index(c) for c in carried]] = 1.0
     return StartUnknown(name, tangent, -limit, limit, sigma, instead=instead)
+
+
+def with_inputs(run: Run, values: NDArray[np.float64]) -> Run:
+    """`run` with the inputs `values` [k, nu], zero-order hold from sample to sample."""
+    held = np.ascontiguousarray(values)
+    return replace(run, inputs=stack([table(run.time, c) for c in held.T]), held_inputs=held)
+
+
+def by_source(runs: Sequence[Run]) -> list[list[int]]:
+    """Indices of the runs, the windows of one run together."""
+    grouped: dict[str, list[int]] = {}
+    for index, run in enumerate(runs):
+        grouped.setdefault(run.source, []).append(index)
+    return list(grouped.values())
+
+
+def by_log(runs: Sequence[Run], parts: Sequence[FloatArray]) -> list[FloatArray]:
+    """What belongs to every run, rows [k, ...], one after the other for the runs of each log."""
+    return [np.concatenate([parts[k] for k in group]) for group in by_source(runs)]
+
+
+def sizes(runs: Sequence[Run]) -> FloatArray:
+    """Number of samples of every run [runs]."""
+    return np.array([len(run.time) for run in runs], dtype=np.float64)

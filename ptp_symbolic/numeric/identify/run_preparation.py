@@ -8,11 +8,10 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.data import Log
-from ptp_symbolic.numeric.data.continuity import jumps, parted, pauses
+from ptp_symbolic.numeric.data.latency import jumps, parted, pauses
 from ptp_symbolic.numeric.identify.constants import ROUNDING
 from ptp_symbolic.numeric.identify.noise import white_noise
-from ptp_symbolic.numeric.identify.rate_signals import refuse_unseen_angles
-from ptp_symbolic.numeric.identify.run import WINDOW, Run, with_start
+from ptp_symbolic.numeric.identify.run import WINDOW, Run, refuse_unseen_angles, with_start
 from ptp_symbolic.numeric.identify.work import Work
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.inputs import stack, table

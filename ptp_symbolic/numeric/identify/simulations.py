@@ -11,11 +11,10 @@ from ptp_symbolic.numeric.identify.constants import CYCLES, ITERATIONS, NEARBY
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, limits, slopes, to_values
 from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.numeric.identify.gap_places import residual_of
-from ptp_symbolic.numeric.identify.least_squares import Problem
+from ptp_symbolic.numeric.identify.least_squares import Problem, Secants
 from ptp_symbolic.numeric.identify.requirements import keep_possible
 from ptp_symbolic.numeric.identify.robust_loss import blocks_of
 from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.identify.secants import Secants
 from ptp_symbolic.numeric.runtime.model import Model
 
 FloatArray = NDArray[np.float64]

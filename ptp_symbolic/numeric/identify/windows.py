@@ -3,6 +3,8 @@
 A machine that forgets (a geared drive, damped by its back-EMF) is judged over whole runs. One that
 integrates its input noise, or whose errors grow (a torque-driven axis, a payload above the tilt
 axis), would be judged by that noise; it is cut into windows with starts of their own.
+
+Windows of a log that follow one another: each begins where the simulated one before it ended.
 """
 
 import itertools
@@ -27,9 +29,8 @@ from ptp_symbolic.numeric.identify.constants import (
     TUNING,
 )
 from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate, start_state
-from ptp_symbolic.numeric.identify.first_rate import Around
 from ptp_symbolic.numeric.identify.replays import input_noise, propagated_noise, replayed
-from ptp_symbolic.numeric.identify.run import WINDOW, Run, with_start
+from ptp_symbolic.numeric.identify.run import WINDOW, Around, Run, with_start
 from ptp_symbolic.numeric.identify.sample_averages import thinned
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.inputs import part_of_held

@@ -23,7 +23,7 @@ COMPILE = {
     RUNNER: f"from {PACKAGE}.hybrid import runner; runner(False)",
     LEAN_RUNNER: f"from {PACKAGE}.hybrid import runner; runner(False, True)",
     SAMPLED_RUNNER: f"from {PACKAGE}.hybrid import runner; runner(True)",
-    HELD_SAMPLES: f"from {PACKAGE}.held_samples import loop; loop()",
+    HELD_SAMPLES: f"from {PACKAGE}.sampling import loop; loop()",
     SMOOTH_RUNNER: f"from {PACKAGE}.smooth_runner import runner; runner()",
     FIXED_RUNNER: f"from {PACKAGE}.fixed_runner import runner; runner()",
 }

@@ -21,12 +21,15 @@ from numba import njit, types
 
 from ptp_symbolic.numeric.runtime.element_layout import contact_modes
 from ptp_symbolic.numeric.simulation.ahead import FIXED_RUNNER, made_once
-from ptp_symbolic.numeric.simulation.events.impacts import SETTLING, SPRUNG
-from ptp_symbolic.numeric.simulation.events.location import is_finite, is_outside, stop_at_bound
-from ptp_symbolic.numeric.simulation.events.modes import largest_violation, settle
-from ptp_symbolic.numeric.simulation.events.pressed import fill_guards
-from ptp_symbolic.numeric.simulation.kernels.by_address import place
-from ptp_symbolic.numeric.simulation.kernels.calls import call
+from ptp_symbolic.numeric.simulation.events.impacts import SETTLING, SPRUNG, fill_guards
+from ptp_symbolic.numeric.simulation.events.modes import (
+    is_finite,
+    is_outside,
+    largest_violation,
+    settle,
+    stop_at_bound,
+)
+from ptp_symbolic.numeric.simulation.kernels.calls import call, place
 from ptp_symbolic.numeric.simulation.kernels.records import (
     DIVERGED,
     DONE,

@@ -25,14 +25,13 @@ from ptp_symbolic.numeric.simulation.ahead import (
     made_once,
 )
 from ptp_symbolic.numeric.simulation.events.crossing import enter, jump_by_delay, pass_event
-from ptp_symbolic.numeric.simulation.events.location import (
+from ptp_symbolic.numeric.simulation.events.modes import (
     first_violation,
     is_finite,
     is_outside,
     locate_event,
 )
-from ptp_symbolic.numeric.simulation.held_samples import reach_samples_at
-from ptp_symbolic.numeric.simulation.kernels.by_address import place
+from ptp_symbolic.numeric.simulation.kernels.calls import place
 from ptp_symbolic.numeric.simulation.kernels.records import (
     CHATTERING,
     DIVERGED,
@@ -62,8 +61,11 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     merged,
     source_stamp,
 )
-from ptp_symbolic.numeric.simulation.methods.exponential_step import reach_sample
-from ptp_symbolic.numeric.simulation.methods.propagator import PROPAGATOR, Propagator
+from ptp_symbolic.numeric.simulation.methods.exponential_step import (
+    PROPAGATOR,
+    Propagator,
+    reach_sample,
+)
 from ptp_symbolic.numeric.simulation.methods.steps import (
     ROSENBROCK,
     attempt,
@@ -86,6 +88,7 @@ from ptp_symbolic.numeric.simulation.sampling import (
     Sampling,
     is_due,
     next_stop,
+    reach_samples_at,
     sample_at,
 )
 from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs

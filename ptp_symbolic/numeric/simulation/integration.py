@@ -19,7 +19,6 @@ from ptp_symbolic.numeric.simulation.buffers import (
     new_watch,
 )
 from ptp_symbolic.numeric.simulation.events.impacts import STICKS
-from ptp_symbolic.numeric.simulation.held_samples import loop_address
 from ptp_symbolic.numeric.simulation.kernels.calls import addresses
 from ptp_symbolic.numeric.simulation.kernels.linear import padded
 from ptp_symbolic.numeric.simulation.kernels.records import (
@@ -31,9 +30,9 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     Watch,
 )
 from ptp_symbolic.numeric.simulation.kernels.specialised import specialised, zeros_of
-from ptp_symbolic.numeric.simulation.methods.propagator import new_propagator
+from ptp_symbolic.numeric.simulation.methods.exponential_step import new_propagator
 from ptp_symbolic.numeric.simulation.methods.steps import ROSENBROCK, RUNGE_KUTTA
-from ptp_symbolic.numeric.simulation.sampling import new_sampling
+from ptp_symbolic.numeric.simulation.sampling import loop_address, new_sampling
 from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
 from ptp_symbolic.numeric.simulation.smooth_integration import integrate_smooth, is_smooth
 

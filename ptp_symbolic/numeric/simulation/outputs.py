@@ -3,7 +3,7 @@
 import numpy as np
 
 from ptp_symbolic.numeric.runtime.element_layout import contact_count, contact_modes
-from ptp_symbolic.numeric.simulation.events.pressed import PRESSED
+from ptp_symbolic.numeric.simulation.events.impacts import PRESSED
 from ptp_symbolic.numeric.simulation.kernels.calls import call
 from ptp_symbolic.numeric.simulation.kernels.records import (
     EVENTS,

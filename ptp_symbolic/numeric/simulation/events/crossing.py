@@ -4,10 +4,19 @@ Gantmacher, 1958).
 Go on in the modes to which new inputs, or an event, have led.
 """
 
-from ptp_symbolic.numeric.simulation.events.impacts import clear_resting
-from ptp_symbolic.numeric.simulation.events.location import fill_violations, is_outside
-from ptp_symbolic.numeric.simulation.events.modes import settle, violation, violation_gradient
-from ptp_symbolic.numeric.simulation.events.pressed import PRESSED, derivative, fill_guards
+from ptp_symbolic.numeric.simulation.events.impacts import (
+    PRESSED,
+    clear_resting,
+    derivative,
+    fill_guards,
+)
+from ptp_symbolic.numeric.simulation.events.modes import (
+    fill_violations,
+    is_outside,
+    settle,
+    violation,
+    violation_gradient,
+)
 from ptp_symbolic.numeric.simulation.kernels.calls import call
 from ptp_symbolic.numeric.simulation.kernels.records import (
     CHATTERING,

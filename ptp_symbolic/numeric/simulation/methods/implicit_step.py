@@ -15,7 +15,7 @@ from ptp_symbolic.numeric.runtime.element_layout import (
     contact_modes,
     friction_guards,
 )
-from ptp_symbolic.numeric.simulation.events.pressed import derivative, jacobian
+from ptp_symbolic.numeric.simulation.events.impacts import derivative, jacobian
 from ptp_symbolic.numeric.simulation.kernels.calls import call
 from ptp_symbolic.numeric.simulation.kernels.linear import factor, solve
 from ptp_symbolic.numeric.simulation.kernels.records import copy, inlined, kernel

@@ -10,7 +10,7 @@ L-stable and stiffly accurate: the last stage is the error estimate.
 
 import numpy as np
 
-from ptp_symbolic.numeric.simulation.events.pressed import derivative, hold_at_rest, jacobian
+from ptp_symbolic.numeric.simulation.events.impacts import derivative, hold_at_rest, jacobian
 from ptp_symbolic.numeric.simulation.kernels.linear import (
     LANES,
     add_product,

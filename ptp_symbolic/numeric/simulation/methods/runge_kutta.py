@@ -8,7 +8,7 @@ assumption, Computers and Mathematics with Applications 62 (2011) 770-775, Table
 
 import numpy as np
 
-from ptp_symbolic.numeric.simulation.events.pressed import derivative, jacobian
+from ptp_symbolic.numeric.simulation.events.impacts import derivative, jacobian
 from ptp_symbolic.numeric.simulation.kernels.linear import (
     LANES,
     add_sparse_product,
