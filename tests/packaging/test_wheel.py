@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-NOT_INSTALLED = shutil.ignore_patterns("__pycache__", "*.egg-info", "_build")
+NOT_INSTALLED = shutil.ignore_patterns("__pycache__", "*.egg-info", "_build", "compiled")
 
 
 SOURCES = ("ptp_symbolic", "generated", "docs", "scripts", "tests")
@@ -76,7 +76,7 @@ def files_below(folder: Path, name: str) -> set[str]:
     return {
         f"{name}/{path.relative_to(folder).as_posix()}"
         for path in folder.rglob("*")
-        if path.is_file() and "__pycache__" not in path.parts
+        if path.is_file() and not {"__pycache__", "compiled"} & set(path.parts)
     }
 
 
@@ -135,3 +135,26 @@ def test_commands_run_from_the_wheel_alone(
     )
     assert ran.returncode == 0, ran.stderr
     assert shown in ran.stdout
+
+
+@pytest.mark.long
+def test_what_the_build_compiled_runs_where_nothing_was_compiled(
+    sdist: Path, tmp_path: Path
+) -> None:
+    build = "import sys; sys.path.insert(0, 'scripts'); import build_backend as b;"
+    command = [sys.executable, "-c", build + "print(b.build_wheel('dist'))"]
+    ran = subprocess.run(command, cwd=sdist, check=True, capture_output=True, text=True)
+    wheel = sdist / "dist" / ran.stdout.splitlines()[-1]
+    assert not wheel.name.endswith("-any.whl")
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(tmp_path / "unpacked")
+    program = "import ptp_symbolic as ptp; print(ptp.simulate('pan_drive', 1.0, u_pan=6.0).events)"
+    cache = tmp_path / "cache"
+    environment = {
+        "PYTHONPATH": str(tmp_path / "unpacked"),
+        "NUMBA_CACHE_DIR": str(cache),
+        "PATH": "",
+    }
+    command = [sys.executable, "-c", program]
+    subprocess.run(command, cwd=tmp_path, env=environment, check=True)
+    assert not list(cache.rglob("*.nbc"))

@@ -5,6 +5,7 @@ zeroed in the middle, which ends in a traceback of its own or in the end of the 
 functions of this package carry a SHA-256 behind what numba reads: where it does not fit, the
 function is compiled and kept anew. Where nothing can be kept, it is compiled in every process.
 They lie beside the source, or in NUMBA_CACHE_DIR, where checkouts at different places share them.
+What came with the installation (see `shipped`) is taken first.
 
 To import this module is to have it so, for functions that are decorated later.
 """
@@ -19,6 +20,8 @@ from types import FunctionType
 from typing import Any
 
 from numba.core import caching, config, dispatcher
+
+from ptp_symbolic.numeric.runtime import shipped
 
 ROOTS = ("ptp_symbolic", "generated")  # packages whose functions are ours
 EMITTED = "ptp_model_"  # how the modules of a user's machines are called
@@ -58,6 +61,10 @@ class SealedCache(caching.FunctionCache):
 
     def load_overload(self, signature: Any, target: Any) -> Any:
         """The compiled function, or None where there is none that can be used."""
+        came_along = shipped.read(self._shipped_name(signature, target))
+        if came_along is not None:
+            target.refresh()
+            return self._impl.rebuild(target, came_along)
         with suppress(OSError):
             return super().load_overload(signature, target)
         return None
@@ -66,6 +73,12 @@ class SealedCache(caching.FunctionCache):
         """Keep the compiled function, where that is possible."""
         with suppress(OSError):
             super().save_overload(signature, data)
+        name = self._shipped_name(signature, data.target_context)
+        shipped.write(name, self._impl.reduce(data))
+
+    def _shipped_name(self, signature: Any, target: Any) -> str:
+        _, _, code = self._index_key(signature, target.codegen())
+        return shipped.name_of(self._py_func, signature, code)
 
 
 def _is_whole(path: str) -> bool:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numba
 
+from ptp_symbolic.numeric.runtime import shipped
 from ptp_symbolic.numeric.simulation.kernels.records import source_stamp
 
 RUNNER, SAMPLED_RUNNER, HELD_SAMPLES = "runner", "sampled-runner", "held-samples"
@@ -37,7 +38,7 @@ def compile_ahead(*kernels: str) -> None:
     done before or is under way.
     """
     for kernel in kernels:
-        if kernel in _begun or _mark(kernel).exists():
+        if kernel in _begun or _mark(kernel).exists() or _came_along(kernel):
             continue
         if not sys.executable:  # embedded in another program
             return
@@ -83,6 +84,14 @@ def _mark(kernel: str) -> Path:
     """A file that tells by its name for which sources, numba and Python a kernel was compiled; if
     it has been taken away since, that costs time alone.
     """
+    return MARKS / _mark_name(kernel)
+
+
+def _mark_name(kernel: str) -> str:
     version = f"{numba.__version__}-{sys.implementation.cache_tag}"
-    name = f"{kernel}-of-{source_stamp():x}-{version}"
-    return MARKS / name
+    return f"{kernel}-of-{source_stamp():x}-{version}"
+
+
+def _came_along(kernel: str) -> bool:
+    """Whether the kernel came with the installation."""
+    return shipped.fits() and (shipped.FOLDER / _mark_name(kernel)).exists()
