@@ -24,6 +24,7 @@ def mark(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(ahead, "MARKS", tmp_path / "__pycache__")
     monkeypatch.setattr(ahead, "COMPILE", dict.fromkeys(COMPILE, slow))
     monkeypatch.setattr(ahead, "_begun", {})
+    monkeypatch.setattr(ahead, "_came_along", lambda _: False)
     (tmp_path / "__pycache__").mkdir()
     return ahead._mark(RUNNER)
 
@@ -85,3 +86,11 @@ def test_what_is_compiled_ahead_is_what_runs_and_leaves_its_mark(mark: Path) -> 
         exec(COMPILE[kernel], {})
         assert made.cache_info().currsize == 1
         assert ahead._mark(kernel).exists()
+
+
+def test_nothing_is_begun_for_what_came_with_the_installation(
+    mark: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(ahead, "_came_along", lambda kernel: kernel == RUNNER)
+    ahead.compile_ahead(RUNNER)
+    assert not ahead._begun
