@@ -101,7 +101,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "1edd4bb87e7b9e79"
+MODEL_HASH = "a5221fb963b37809"
 NAME = "full"
 TITLE = "Both axes of the thesis, all drives"
 # How many numbers `prepare` writes.
@@ -261,8 +261,8 @@ def mass_and_forces(t, x, u, p, m, c):
     coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
     omega_gear_pan_minus_omega_pan = omega_gear_pan - omega_pan
     shaft_torque_pan_term = d_shaft_pan * omega_gear_pan_minus_omega_pan
-    theta_pan_minus_theta_gear_pan = -theta_gear_pan + theta_pan
-    shaft_torque_pan_term_2 = -half_gap_pan * side_pan - theta_pan_minus_theta_gear_pan
+    minus_separation_pan = -theta_gear_pan + theta_pan
+    shaft_torque_pan_term_2 = -half_gap_pan * side_pan - minus_separation_pan
     k_shaft_pan_shaft_torque_pan_term_2 = k_shaft_pan * shaft_torque_pan_term_2
     shaft_torque_pan = active_pan * (k_shaft_pan_shaft_torque_pan_term_2 + shaft_torque_pan_term)
     force_pan = (-b_pan * omega_pan - omega_tilt * (coriolis
@@ -296,8 +296,9 @@ def mass_and_forces(t, x, u, p, m, c):
     driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
     driving_torque_tilt = -driving_torque_tilt_term + driving_torque_tilt_term_2 * ratio_tilt
     force_pan_mass_pan_tilt = force_pan * mass_pan_tilt
+    minus_gravity_torque_tilt = cos_tilt * gravity_cos_tilt + gravity_sin_tilt * sin_tilt
     load_torque_tilt_term = (-b_tilt * omega_tilt + 0.5 * coriolis * omega_pan
-        + cos_tilt * gravity_cos_tilt + gravity_sin_tilt * sin_tilt)
+        + minus_gravity_torque_tilt)
     load_torque_tilt = -force_pan_mass_pan_tilt * mass_pan_inverse + load_torque_tilt_term
     carried_tilt = (-J_motor_tilt_ratio_tilt_sq * load_torque_tilt
         + driving_torque_tilt * load_inertia_tilt)
@@ -321,9 +322,9 @@ def mass_and_forces(t, x, u, p, m, c):
     rate_of_i_pan = (-K_t_pan_N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
     rate_of_i_tilt = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
     return (cos_tilt, sin_tilt, omega_gear_pan_minus_omega_pan, shaft_torque_pan_term,
-        theta_pan_minus_theta_gear_pan, shaft_torque_pan_term_2,
-        k_shaft_pan_shaft_torque_pan_term_2, shaft_torque_pan, force_pan, mass_pan, mass_pan_tilt,
-        mass_pan_tilt_sq, ratio_tilt_sq, omega_tilt_sq, force_pan_mass_pan_tilt, load_torque_tilt,
+        minus_separation_pan, shaft_torque_pan_term_2, k_shaft_pan_shaft_torque_pan_term_2,
+        shaft_torque_pan, force_pan, mass_pan, mass_pan_tilt, mass_pan_tilt_sq, ratio_tilt_sq,
+        omega_tilt_sq, force_pan_mass_pan_tilt, minus_gravity_torque_tilt, load_torque_tilt,
         force_tilt_term, force_tilt_term_2, force_tilt, mass_tilt, omega_gear_pan_sq,
         force_gear_pan_term, force_gear_pan, rate_of_i_pan, rate_of_i_tilt)
 
@@ -355,9 +356,9 @@ def prepared_derivative(t, x, u, p, m, c, dx):
     """
     forces = mass_and_forces(t, x, u, p, m, c)
     force_pan, mass_pan, mass_pan_tilt = forces[8], forces[9], forces[10]
-    mass_pan_tilt_sq, force_pan_mass_pan_tilt, force_tilt = forces[11], forces[14], forces[18]
-    mass_tilt, force_gear_pan, rate_of_i_pan = forces[19], forces[22], forces[23]
-    rate_of_i_tilt = forces[24]
+    mass_pan_tilt_sq, force_pan_mass_pan_tilt, force_tilt = forces[11], forces[14], forces[19]
+    mass_tilt, force_gear_pan, rate_of_i_pan = forces[20], forces[23], forces[24]
+    rate_of_i_tilt = forces[25]
     omega_pan, omega_tilt, omega_gear_pan = x[2], x[3], x[5]
     slide_pan, slide_tilt = m[0], m[1]
     inverse_mass_gear_pan = c[16]
@@ -399,10 +400,10 @@ def guards(t, x, u, p, m, g):
     """
     c = constants(p)
     forces = mass_and_forces(t, x, u, p, m, c)
-    shaft_torque_pan_term, theta_pan_minus_theta_gear_pan = forces[3], forces[4]
-    shaft_torque_pan, force_pan, mass_pan = forces[7], forces[8], forces[9]
-    mass_pan_tilt, mass_pan_tilt_sq, load_torque_tilt = forces[10], forces[11], forces[15]
-    force_tilt_term_2, force_tilt, mass_tilt = forces[17], forces[18], forces[19]
+    shaft_torque_pan_term, minus_separation_pan, shaft_torque_pan = forces[3], forces[4], forces[7]
+    force_pan, mass_pan, mass_pan_tilt = forces[8], forces[9], forces[10]
+    mass_pan_tilt_sq, load_torque_tilt, force_tilt_term_2 = forces[11], forces[16], forces[18]
+    force_tilt, mass_tilt = forces[19], forces[20]
     i_pan = x[6]
     F_s_pan, a_F_s_pan, k_shaft_pan = p[14], p[18], p[22]
     slide_tilt = m[1]
@@ -422,12 +423,10 @@ def guards(t, x, u, p, m, g):
     g[4] = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt - forward_tilt_term
     # backward_tilt
     g[5] = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt + forward_tilt_term
-    g[6] = -theta_pan_minus_theta_gear_pan  # separation_pan
+    g[6] = -minus_separation_pan  # separation_pan
     g[7] = half_gap_pan
-    # upper_pan
-    g[8] = k_shaft_pan * (-half_gap_pan - theta_pan_minus_theta_gear_pan) + shaft_torque_pan_term
-    # lower_pan
-    g[9] = k_shaft_pan * (half_gap_pan - theta_pan_minus_theta_gear_pan) + shaft_torque_pan_term
+    g[8] = k_shaft_pan * (-half_gap_pan - minus_separation_pan) + shaft_torque_pan_term  # upper_pan
+    g[9] = k_shaft_pan * (half_gap_pan - minus_separation_pan) + shaft_torque_pan_term  # lower_pan
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -443,8 +442,8 @@ def energy(t, x, u, p, m, e):
     cos_tilt, sin_tilt, omega_gear_pan_minus_omega_pan = forces[0], forces[1], forces[2]
     shaft_torque_pan_term, shaft_torque_pan_term_2 = forces[3], forces[5]
     k_shaft_pan_shaft_torque_pan_term_2, mass_pan, mass_pan_tilt = forces[6], forces[9], forces[10]
-    ratio_tilt_sq, omega_tilt_sq, force_tilt_term = forces[12], forces[13], forces[16]
-    mass_tilt, omega_gear_pan_sq, force_gear_pan_term = forces[19], forces[20], forces[21]
+    ratio_tilt_sq, omega_tilt_sq, force_tilt_term = forces[12], forces[13], forces[17]
+    mass_tilt, omega_gear_pan_sq, force_gear_pan_term = forces[20], forces[21], forces[22]
     omega_pan, omega_tilt, omega_gear_pan, i_pan, i_tilt = x[2], x[3], x[5], x[6], x[7]
     u_pan, u_tilt = u[0], u[1]
     b_pan, b_tilt, k_shaft_pan, L_pan, R_pan, L_tilt = p[11], p[12], p[22], p[24], p[25], p[29]
@@ -482,9 +481,9 @@ def equation_error(t, x, u, p, m, r):
     """
     c = constants(p)
     forces = mass_and_forces(t, x, u, p, m, c)
-    force_pan, mass_pan, mass_pan_tilt, force_tilt = forces[8], forces[9], forces[10], forces[18]
-    mass_tilt, force_gear_pan, rate_of_i_pan = forces[19], forces[22], forces[23]
-    rate_of_i_tilt = forces[24]
+    force_pan, mass_pan, mass_pan_tilt, force_tilt = forces[8], forces[9], forces[10], forces[19]
+    mass_tilt, force_gear_pan, rate_of_i_pan = forces[20], forces[23], forces[24]
+    rate_of_i_tilt = forces[25]
     given_accel_pan, given_accel_tilt, given_accel_gear_pan = x[8], x[9], x[10]
     mass_gear_pan = c[15]
     r[0] = -force_pan + given_accel_pan * mass_pan + given_accel_tilt * mass_pan_tilt  # torque_pan
@@ -493,6 +492,44 @@ def equation_error(t, x, u, p, m, r):
     r[2] = -force_gear_pan + given_accel_gear_pan * mass_gear_pan  # torque_gear_pan
     r[3] = rate_of_i_pan
     r[4] = rate_of_i_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def mass_matrix(t, x, u, p, m, M):
+    """Write the mass matrix of the joints, then of gear outputs, into M.
+
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
+      see MODE_NAMES; M [3, 3] in kg m^2.
+    """
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    mass_pan, mass_pan_tilt, mass_tilt = forces[9], forces[10], forces[20]
+    mass_gear_pan = c[15]
+    M[0, 0] = mass_pan
+    M[0, 1] = mass_pan_tilt
+    M[0, 2] = 0.0  # mass_pan_gear_pan
+    M[1, 0] = mass_pan_tilt
+    M[1, 1] = mass_tilt
+    M[1, 2] = 0.0  # mass_tilt_gear_pan
+    M[2, 0] = 0.0  # mass_pan_gear_pan
+    M[2, 1] = 0.0  # mass_tilt_gear_pan
+    M[2, 2] = mass_gear_pan
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def gravity_torque(t, x, u, p, m, G):
+    """Write the torques that hold the machine against its weight into G.
+
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
+      see MODE_NAMES; G [3] in N m.
+    G: gravity_torque_pan, gravity_torque_tilt, gravity_torque_gear_pan.
+    """
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    minus_gravity_torque_tilt = forces[15]
+    G[0] = 0.0  # gravity_torque_pan
+    G[1] = -minus_gravity_torque_tilt  # gravity_torque_tilt
+    G[2] = 0.0  # gravity_torque_gear_pan
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -1922,4 +1959,4 @@ EFFECTS = (
      "linear actuator with lead screw and linkage",
      "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6", "", False),
 )
-# END sha256 90ee20cd3df9c93f336bb7daf86e1cce3ac73b79af01ec9d33137980199f1aa4
+# END sha256 6b12344272330d9751ff4f3c7da16e0ab1a880a51bc260b8e17be72c429e3484

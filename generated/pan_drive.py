@@ -32,7 +32,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "a5c3efd44a400bab"
+MODEL_HASH = "a64987c6bc45cbc9"
 NAME = "pan_drive"
 TITLE = "Pan drive of the thesis"
 # How many numbers `prepare` writes.
@@ -111,8 +111,8 @@ def mass_and_forces(t, x, u, p, m, c):
     half_gap_pan, K_t_pan_N_pan = c[0], c[4]
     omega_gear_pan_minus_omega_pan = omega_gear_pan - omega_pan
     shaft_torque_pan_term = d_shaft_pan * omega_gear_pan_minus_omega_pan
-    theta_pan_minus_theta_gear_pan = -theta_gear_pan + theta_pan
-    shaft_torque_pan_term_2 = -half_gap_pan * side_pan - theta_pan_minus_theta_gear_pan
+    minus_separation_pan = -theta_gear_pan + theta_pan
+    shaft_torque_pan_term_2 = -half_gap_pan * side_pan - minus_separation_pan
     k_shaft_pan_shaft_torque_pan_term_2 = k_shaft_pan * shaft_torque_pan_term_2
     shaft_torque_pan = active_pan * (k_shaft_pan_shaft_torque_pan_term_2 + shaft_torque_pan_term)
     force_pan = -b_pan * omega_pan + shaft_torque_pan
@@ -126,7 +126,7 @@ def mass_and_forces(t, x, u, p, m, c):
         + 1.0) - coulomb_torque_pan) * math.exp(-stribeck_square_pan)))
     force_gear_pan = K_t_pan * N_pan * i_pan - force_gear_pan_term - shaft_torque_pan
     rate_of_i_pan = (-K_t_pan_N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
-    return (omega_gear_pan_minus_omega_pan, shaft_torque_pan_term, theta_pan_minus_theta_gear_pan,
+    return (omega_gear_pan_minus_omega_pan, shaft_torque_pan_term, minus_separation_pan,
         shaft_torque_pan_term_2, k_shaft_pan_shaft_torque_pan_term_2, shaft_torque_pan, force_pan,
         omega_gear_pan_sq, force_gear_pan_term, force_gear_pan, rate_of_i_pan)
 
@@ -184,20 +184,17 @@ def guards(t, x, u, p, m, g):
     """
     c = constants(p)
     forces = mass_and_forces(t, x, u, p, m, c)
-    shaft_torque_pan_term, theta_pan_minus_theta_gear_pan = forces[1], forces[2]
-    shaft_torque_pan = forces[5]
+    shaft_torque_pan_term, minus_separation_pan, shaft_torque_pan = forces[1], forces[2], forces[5]
     i_pan = x[4]
     F_s_pan, a_F_s_pan, k_shaft_pan = p[3], p[7], p[11]
     half_gap_pan, K_t_pan_N_pan = c[0], c[4]
     g[0] = K_t_pan_N_pan * i_pan - shaft_torque_pan  # holding_pan
     g[1] = F_s_pan * (a_F_s_pan + 1.0)  # forward_pan
     g[2] = F_s_pan * (1.0 - a_F_s_pan)  # backward_pan
-    g[3] = -theta_pan_minus_theta_gear_pan  # separation_pan
+    g[3] = -minus_separation_pan  # separation_pan
     g[4] = half_gap_pan
-    # upper_pan
-    g[5] = k_shaft_pan * (-half_gap_pan - theta_pan_minus_theta_gear_pan) + shaft_torque_pan_term
-    # lower_pan
-    g[6] = k_shaft_pan * (half_gap_pan - theta_pan_minus_theta_gear_pan) + shaft_torque_pan_term
+    g[5] = k_shaft_pan * (-half_gap_pan - minus_separation_pan) + shaft_torque_pan_term  # upper_pan
+    g[6] = k_shaft_pan * (half_gap_pan - minus_separation_pan) + shaft_torque_pan_term  # lower_pan
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -251,6 +248,34 @@ def equation_error(t, x, u, p, m, r):
     r[0] = J_pan * given_accel_pan - force_pan  # torque_pan
     r[1] = -force_gear_pan + given_accel_gear_pan * mass_gear_pan  # torque_gear_pan
     r[2] = rate_of_i_pan
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def mass_matrix(t, x, u, p, m, M):
+    """Write the mass matrix of the joints, then of gear outputs, into M.
+
+    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
+      see MODE_NAMES; M [2, 2] in kg m^2.
+    """
+    c = constants(p)
+    J_pan = p[0]
+    mass_gear_pan = c[2]
+    M[0, 0] = J_pan  # mass_pan
+    M[0, 1] = 0.0  # mass_pan_gear_pan
+    M[1, 0] = 0.0  # mass_pan_gear_pan
+    M[1, 1] = mass_gear_pan
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def gravity_torque(t, x, u, p, m, G):
+    """Write the torques that hold the machine against its weight into G.
+
+    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
+      see MODE_NAMES; G [2] in N m.
+    G: gravity_torque_pan, gravity_torque_gear_pan.
+    """
+    G[0] = 0.0  # gravity_torque_pan
+    G[1] = 0.0  # gravity_torque_gear_pan
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -558,4 +583,4 @@ EFFECTS = (
     ("dc_motor", "pan", ("L_pan", "R_pan", "K_t_pan", "J_motor_pan", "N_pan"), (), (),
      "geared DC motor", "thesis Eq. 3.10, Eq. 3.11 with erratum 8", "", False),
 )
-# END sha256 a3c20114bce1de6d61bd6f0f064a88f9a57489fabb8b8a2b1838239651801a7a
+# END sha256 0cd9438b128fb47f53e8a45ad6546a95ef74719190b421138b877866d9511304

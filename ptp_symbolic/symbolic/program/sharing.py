@@ -82,7 +82,12 @@ def share(definitions: Sequence[Line], outputs: Sequence[Line], words: Vocabular
     available, final = _without_aliases(shared, defined, meant, final)
     targets = {target for target, _ in outputs}
     ordered = _inlined(_once(_ordered(available, final), targets), targets)
-    entries = {e: words.targets.get(t) for t, e in reversed(ordered) if t in targets}
+    entries: dict[sp.Expr, str | None] = {}
+    for target, e in reversed(ordered):
+        if target in targets:
+            word = words.targets.get(target)
+            entries[e] = word
+            entries.setdefault(-e, word and f"minus_{word}")
     return _renamed(ordered, {name for name, _ in available}, words.targets, entries)
 
 
