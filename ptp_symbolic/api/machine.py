@@ -125,9 +125,7 @@ class Machine(Displayed, Model):
         self.module.mass_matrix(0.0, *vectors, self._modes(0.0, *vectors), matrix)
         return matrix
 
-    def gravity_torque(
-        self, x: Values, p: Values | None = None, *, t: float = 0.0
-    ) -> FloatArray:
+    def gravity_torque(self, x: Values, p: Values | None = None, *, t: float = 0.0) -> FloatArray:
         """The torques g [j] in N m (N) that hold the machine at x [n] against its weight, with
         parameters p [np] (defaults): M a + c + g = torques, in the rows of `mass_matrix_rates`.
 

@@ -159,7 +159,9 @@ def test_mass_matrices_are_positive_definite_and_weight_is_the_slope_of_energy(n
     """The weight of all bodies does not depend on rates, inputs or drive states."""
     model, rng, h = ptp_symbolic.load(name), np.random.default_rng(13), 1e-5
     rates = [k for k, n in enumerate(model.state_names) if n.startswith("omega_")]
-    angles = [model.state_names.index(model.state_names[k].replace("omega", "theta")) for k in rates]
+    angles = [
+        model.state_names.index(model.state_names[k].replace("omega", "theta")) for k in rates
+    ]
     p, no_input = model.parameter_vector(), np.zeros(len(model.input_names))
     m, weightless = np.zeros(len(model.mode_names)), p.copy()
     if "gravity" in model.parameter_names:
