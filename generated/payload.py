@@ -43,7 +43,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "bbd49efef19328e6"
+MODEL_HASH = "49d58dccc2db34c2"
 NAME = "payload"
 TITLE = "Pan-tilt platform of the thesis with its payload"
 # How many numbers `prepare` writes.
@@ -356,16 +356,16 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         - balance_pan_by_omega_tilt * mass_pan_tilt))  # accel_tilt_by_omega_tilt
     accel_pan_by_tau_pan = inertia_tilt * inverse_determinant
     fu[2, 0] = accel_pan_by_tau_pan
-    minus_accel_pan_by_tau_tilt = inverse_determinant * mass_pan_tilt
-    fu[3, 0] = -minus_accel_pan_by_tau_tilt  # accel_tilt_by_tau_pan
-    fu[2, 1] = -minus_accel_pan_by_tau_tilt  # accel_pan_by_tau_tilt
+    inverse_determinant_mass_pan_tilt = inverse_determinant * mass_pan_tilt
+    fu[3, 0] = -inverse_determinant_mass_pan_tilt  # accel_tilt_by_tau_pan
+    fu[2, 1] = -inverse_determinant_mass_pan_tilt  # accel_pan_by_tau_tilt
     accel_tilt_by_tau_tilt = inverse_determinant * mass_pan
     fu[3, 1] = accel_tilt_by_tau_tilt
     if len(fp) == 0:
         return
     accel_pan_by_inertia_pan = -accel_pan * accel_pan_by_tau_pan
     fp[2, 0] = accel_pan_by_inertia_pan  # accel_pan_by_J_pan
-    accel_tilt_by_inertia_pan = accel_pan * minus_accel_pan_by_tau_tilt
+    accel_tilt_by_inertia_pan = accel_pan * inverse_determinant_mass_pan_tilt
     fp[3, 0] = accel_tilt_by_inertia_pan  # accel_tilt_by_J_pan
     coriolis_by_inertia_pan_sin_sq_tilt = coriolis_by_inertia_pan_per_sin_tilt * sin_tilt
     accel_pan_sin_tilt = accel_pan * sin_tilt
@@ -381,7 +381,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * (-balance_pan_by_inertia_pan_sin_sq_tilt * mass_pan_tilt
         + balance_tilt_by_inertia_pan_sin_sq_tilt * mass_pan))
     fp[3, 1] = accel_tilt_by_inertia_pan_sin_sq_tilt  # accel_tilt_by_J_x_tilt
-    accel_pan_by_inertia_tilt = accel_tilt * minus_accel_pan_by_tau_tilt
+    accel_pan_by_inertia_tilt = accel_tilt * inverse_determinant_mass_pan_tilt
     fp[2, 2] = accel_pan_by_inertia_tilt  # accel_pan_by_J_y_tilt
     accel_tilt_by_inertia_tilt = -accel_tilt * accel_tilt_by_tau_tilt
     fp[3, 2] = accel_tilt_by_inertia_tilt  # accel_tilt_by_J_y_tilt
@@ -396,8 +396,8 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     balance_pan_by_coupling_sin_tilt = -accel_tilt * sin_tilt - cos_tilt * omega_tilt_sq
     accel_pan_by_coupling_sin_tilt = (inverse_determinant * (accel_pan_sin_tilt * mass_pan_tilt
         + balance_pan_by_coupling_sin_tilt * inertia_tilt))
-    accel_pan_by_gravity_cos_tilt = -cos_tilt * minus_accel_pan_by_tau_tilt
-    accel_pan_by_gravity_sin_tilt = -minus_accel_pan_by_tau_tilt * sin_tilt
+    accel_pan_by_gravity_cos_tilt = -cos_tilt * inverse_determinant_mass_pan_tilt
+    accel_pan_by_gravity_sin_tilt = -inverse_determinant_mass_pan_tilt * sin_tilt
     coriolis_by_inertia_pan_sin_cos_tilt = (coriolis_by_inertia_pan_per_sin_tilt * cos_tilt
         - omega_pan)
     balance_pan_by_inertia_pan_sin_cos_tilt = (-accel_pan_sin_tilt * cos_tilt
@@ -478,8 +478,8 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + accel_tilt_by_inertia_pan_sin_sq_tilt * inertia_tilt_by_c_z_payload
         + accel_tilt_by_inertia_tilt * inertia_tilt_by_c_z_payload)  # accel_tilt_by_c_z_payload
     fp[2, 11] = -accel_pan_by_tau_pan * omega_pan  # accel_pan_by_b_pan
-    fp[3, 11] = minus_accel_pan_by_tau_tilt * omega_pan  # accel_tilt_by_b_pan
-    fp[2, 12] = minus_accel_pan_by_tau_tilt * omega_tilt  # accel_pan_by_b_tilt
+    fp[3, 11] = inverse_determinant_mass_pan_tilt * omega_pan  # accel_tilt_by_b_pan
+    fp[2, 12] = inverse_determinant_mass_pan_tilt * omega_tilt  # accel_pan_by_b_tilt
     fp[3, 12] = -accel_tilt_by_tau_tilt * omega_tilt  # accel_tilt_by_b_tilt
     fp[2, 13] = (accel_pan_by_gravity_cos_tilt * gravity_cos_tilt_by_gravity
         + accel_pan_by_gravity_sin_tilt * gravity_sin_tilt_by_gravity)  # accel_pan_by_gravity
@@ -664,4 +664,4 @@ EFFECTS = (
      "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
      "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
 )
-# END sha256 4b1ea470cd2c96dea8cd060df9d7dabea50587502548669aafab6e023d3ae0e6
+# END sha256 45856c2fa8e02f53d8d10d1458ebac3473d1371d88ffe279545e0824741ae6d4

@@ -60,7 +60,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "af2c2e421ee7f074"
+MODEL_HASH = "d4e9de38169b9507"
 NAME = "tilt_drive"
 TITLE = "Tilt drive of the thesis"
 # How many numbers `prepare` writes.
@@ -166,13 +166,14 @@ def mass_and_forces(t, x, u, p, m, c):
     linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
     length_tilt = (math.sqrt(-cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq
         - linkage_sin_tilt_sin_tilt))
-    ratio_tilt_term = math.pi * N_tilt * lead_tilt_inverse / length_tilt
-    ratio_tilt_term_2 = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
-    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
-    length_tilt_by_theta_tilt = 0.5 * ratio_tilt_term_2 / length_tilt
+    N_tilt_lead_tilt_inverse_pi_per_length_tilt = math.pi * N_tilt * lead_tilt_inverse / length_tilt
+    ratio_tilt_term = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
+    ratio_tilt = N_tilt_lead_tilt_inverse_pi_per_length_tilt * ratio_tilt_term
+    length_tilt_by_theta_tilt = 0.5 * ratio_tilt_term / length_tilt
     ratio_tilt_by_theta_tilt = (-math.pi * N_tilt * lead_tilt_inverse * length_tilt_by_theta_tilt
-        * ratio_tilt_term_2 / (length_tilt * length_tilt) + ratio_tilt_term
-        * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt))
+        * ratio_tilt_term / (length_tilt * length_tilt)
+        + N_tilt_lead_tilt_inverse_pi_per_length_tilt * (cos_tilt_linkage_cos_tilt
+        + linkage_sin_tilt_sin_tilt))
     omega_tilt_sq = omega_tilt * omega_tilt
     carried_tilt_term = J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
     omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
@@ -370,8 +371,8 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     linkage_cos_tilt = (l_ground_tilt_sq_plus_r_arm_tilt_sq
         - (l_min_tilt_plus_s_start_tilt * l_min_tilt_plus_s_start_tilt))
     cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
-    linkage_sin_tilt_term = 4.0 * r_arm_tilt_sq
-    linkage_sin_tilt = (math.sqrt(l_ground_tilt_sq * linkage_sin_tilt_term
+    four_times_r_arm_tilt_sq = 4.0 * r_arm_tilt_sq
+    linkage_sin_tilt = (math.sqrt(four_times_r_arm_tilt_sq * l_ground_tilt_sq
         - (linkage_cos_tilt * linkage_cos_tilt)))
     sin_tilt = math.sin(theta_tilt)
     linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
@@ -395,20 +396,21 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     half_length_tilt_inverse = 0.5 * length_tilt_inverse
     length_tilt_by_theta_tilt = half_length_tilt_inverse * ratio_tilt_by_N_tilt_term
     length_tilt_inverse_sq = 1.0 / (length_tilt * length_tilt)
-    ratio_tilt_by_theta_tilt_term_3 = lead_tilt_inverse_pi * length_tilt_inverse_sq
-    ratio_tilt_by_theta_tilt_term_4 = ratio_tilt_by_N_tilt_term * ratio_tilt_by_theta_tilt_term_3
-    ratio_tilt_by_theta_tilt_term_5 = length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_term_4
+    lead_tilt_inverse_pi_length_tilt_inverse_sq = lead_tilt_inverse_pi * length_tilt_inverse_sq
+    ratio_tilt_by_theta_tilt_term_3 = (lead_tilt_inverse_pi_length_tilt_inverse_sq
+        * ratio_tilt_by_N_tilt_term)
+    ratio_tilt_by_theta_tilt_term_4 = length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_term_3
     ratio_tilt_by_theta_tilt = (N_tilt * ratio_tilt_by_theta_tilt_term_2
-        - N_tilt * ratio_tilt_by_theta_tilt_term_5)
+        - N_tilt * ratio_tilt_by_theta_tilt_term_4)
     length_tilt_inverse_cubed = 1.0 / (length_tilt * length_tilt * length_tilt)
-    length_tilt_by_theta_tilt_by_theta_tilt_term = 0.25 * length_tilt_inverse_cubed
+    quarter_length_tilt_inverse_cubed = 0.25 * length_tilt_inverse_cubed
     length_tilt_by_theta_tilt_by_theta_tilt = (half_length_tilt_inverse
-        * ratio_tilt_by_theta_tilt_term - length_tilt_by_theta_tilt_by_theta_tilt_term
+        * ratio_tilt_by_theta_tilt_term - quarter_length_tilt_inverse_cubed
         * (ratio_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt_term))
     N_tilt_ratio_tilt_by_theta_tilt_term = N_tilt * ratio_tilt_by_theta_tilt_term
     ratio_tilt_by_theta_tilt_by_theta_tilt_term = (N_tilt_ratio_tilt_by_theta_tilt_term
-        * ratio_tilt_by_theta_tilt_term_3)
-    ratio_tilt_by_length_tilt = -N_tilt * ratio_tilt_by_theta_tilt_term_4
+        * lead_tilt_inverse_pi_length_tilt_inverse_sq)
+    ratio_tilt_by_length_tilt = -N_tilt * ratio_tilt_by_theta_tilt_term_3
     ratio_tilt_by_theta_tilt_by_length_tilt = (2.0 * math.pi * N_tilt * lead_tilt_inverse
         * length_tilt_by_theta_tilt * length_tilt_inverse_cubed * ratio_tilt_by_N_tilt_term
         - ratio_tilt_by_theta_tilt_by_theta_tilt_term)
@@ -442,13 +444,13 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + driving_torque_tilt_by_theta_tilt * inertia_tilt)
     d_screw_tilt_pi = math.pi * d_screw_tilt
     f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
-    lowered_tilt_term = d_screw_tilt_pi + f_screw_tilt_lead_tilt
-    lowered_tilt_term_inverse = 1.0 / lowered_tilt_term
+    d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt = d_screw_tilt_pi + f_screw_tilt_lead_tilt
+    lowered_tilt_term = 1.0 / d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt
     d_screw_tilt_pi_f_screw_tilt = d_screw_tilt_pi * f_screw_tilt
-    lowered_tilt_term_2 = d_screw_tilt_pi_f_screw_tilt - lead_tilt
-    lowered_tilt_term_3 = lowered_tilt_term_2 * lowered_tilt_term_inverse
+    d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt = d_screw_tilt_pi_f_screw_tilt - lead_tilt
+    lowered_tilt_term_2 = d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt * lowered_tilt_term
     d_screw_tilt_pi_lead_tilt_inverse = d_screw_tilt_pi * lead_tilt_inverse
-    lowered_tilt = -d_screw_tilt_pi_lead_tilt_inverse * lowered_tilt_term_3
+    lowered_tilt = -d_screw_tilt_pi_lead_tilt_inverse * lowered_tilt_term_2
     one_minus_lowered_tilt = 1.0 - lowered_tilt
     lost_lowering_tilt_by_theta_tilt_term = J_motor_tilt_ratio_tilt_sq + inertia_tilt * lowered_tilt
     lost_lowering_tilt_by_theta_tilt_term_2 = (one_minus_lowered_tilt * (0.0
@@ -458,11 +460,11 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     lost_lowering_tilt_by_ratio_tilt = (-lost_lowering_tilt_by_theta_tilt_term_2
         * twice_J_motor_tilt_ratio_tilt)
     lost_lowering_tilt_by_theta_tilt = lost_lowering_tilt_by_ratio_tilt * ratio_tilt_by_theta_tilt
-    raised_tilt_term = d_screw_tilt_pi - f_screw_tilt_lead_tilt
-    raised_tilt_term_inverse = 1.0 / raised_tilt_term
-    raised_tilt_term_2 = d_screw_tilt_pi_f_screw_tilt + lead_tilt
-    raised_tilt_term_3 = raised_tilt_term_2 * raised_tilt_term_inverse
-    raised_tilt = d_screw_tilt_pi_lead_tilt_inverse * raised_tilt_term_3
+    d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt = d_screw_tilt_pi - f_screw_tilt_lead_tilt
+    raised_tilt_term = 1.0 / d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt
+    d_screw_tilt_pi_f_screw_tilt_plus_lead_tilt = d_screw_tilt_pi_f_screw_tilt + lead_tilt
+    raised_tilt_term_2 = d_screw_tilt_pi_f_screw_tilt_plus_lead_tilt * raised_tilt_term
+    raised_tilt = d_screw_tilt_pi_lead_tilt_inverse * raised_tilt_term_2
     raised_tilt_minus_one = raised_tilt - 1.0
     lost_raising_tilt_by_theta_tilt_term = J_motor_tilt_ratio_tilt_sq + inertia_tilt * raised_tilt
     lost_raising_tilt_by_theta_tilt_term_2 = (raised_tilt_minus_one
@@ -475,22 +477,22 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         - ratio_tilt * (K_t_tilt * i_tilt - b_motor_tilt_omega_tilt_ratio_tilt))
     lost_lowering_tilt_term = 1.0 / abs(lost_lowering_tilt_by_theta_tilt_term)
     lost_lowering_tilt = lost_lowering_tilt_term * one_minus_lowered_tilt
-    lost_raising_tilt_term = 1.0 / lost_raising_tilt_by_theta_tilt_term
-    lost_raising_tilt = lost_raising_tilt_term * raised_tilt_minus_one
-    force_tilt_term = lost_lowering_tilt + lost_raising_tilt
+    lost_raising_tilt_by_theta_tilt_term_inverse = 1.0 / lost_raising_tilt_by_theta_tilt_term
+    lost_raising_tilt = lost_raising_tilt_by_theta_tilt_term_inverse * raised_tilt_minus_one
+    lost_lowering_tilt_plus_lost_raising_tilt = lost_lowering_tilt + lost_raising_tilt
     carried_tilt = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt - carried_tilt_term * inertia_tilt
     carried_tilt_slide_tilt = carried_tilt * slide_tilt
     abs_carried_tilt_slide_tilt = abs(carried_tilt_slide_tilt)
     half_abs_carried_tilt_slide_tilt = 0.5 * abs_carried_tilt_slide_tilt
-    force_tilt_term_2 = -0.5 * lost_lowering_tilt + 0.5 * lost_raising_tilt
+    force_tilt_term = -0.5 * lost_lowering_tilt + 0.5 * lost_raising_tilt
     force_tilt = (-b_tilt_omega_tilt - carried_tilt_term + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt - slide_tilt * (carried_tilt_slide_tilt * force_tilt_term_2
-        + force_tilt_term * half_abs_carried_tilt_slide_tilt))
+        + gravity_sin_tilt * sin_tilt - slide_tilt * (carried_tilt_slide_tilt * force_tilt_term
+        + half_abs_carried_tilt_slide_tilt * lost_lowering_tilt_plus_lost_raising_tilt))
     accel_tilt = force_tilt * inverse_mass_tilt_slide_tilt_sq
     accel_tilt_twice_J_motor_tilt_ratio_tilt = accel_tilt * twice_J_motor_tilt_ratio_tilt
-    force_tilt_by_carried_tilt = (-slide_tilt * (0.5 * force_tilt_term * slide_tilt * (0.0
-        if carried_tilt_slide_tilt == 0 else math.copysign(1, carried_tilt_slide_tilt))
-        + force_tilt_term_2 * slide_tilt))
+    force_tilt_by_carried_tilt = (-slide_tilt * (force_tilt_term * slide_tilt
+        + 0.5 * lost_lowering_tilt_plus_lost_raising_tilt * slide_tilt * (0.0
+        if carried_tilt_slide_tilt == 0 else math.copysign(1, carried_tilt_slide_tilt))))
     half_carried_tilt_slide_tilt = 0.5 * carried_tilt_slide_tilt
     force_tilt_by_lost_lowering_tilt = (-slide_tilt * (0.5 * abs_carried_tilt_slide_tilt
         - half_carried_tilt_slide_tilt))
@@ -503,18 +505,17 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_theta_tilt
         - gravity_cos_tilt_sin_tilt))  # accel_tilt_by_theta_tilt
     rate_of_i_tilt_by_u_tilt = 1.0 / L_tilt
-    rate_of_i_tilt_by_theta_tilt_term = K_t_tilt * omega_tilt * rate_of_i_tilt_by_u_tilt
+    K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt = K_t_tilt * omega_tilt * rate_of_i_tilt_by_u_tilt
     # rate_of_i_tilt_by_theta_tilt
-    fx[2, 0] = -rate_of_i_tilt_by_theta_tilt_term * ratio_tilt_by_theta_tilt
+    fx[2, 0] = -K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_theta_tilt
     fx[0, 1] = 1.0  # rate_of_theta_tilt_by_omega_tilt
     carried_tilt_by_omega_tilt_term = (2.0 * J_motor_tilt * omega_tilt_ratio_tilt
         * ratio_tilt_by_theta_tilt + b_motor_tilt * ratio_tilt_sq)
     carried_tilt_by_omega_tilt = (J_motor_tilt_ratio_tilt_sq * b_tilt
         - carried_tilt_by_omega_tilt_term * inertia_tilt)
-    minus_holding_tilt_by_omega_tilt = b_tilt + carried_tilt_by_omega_tilt_term
-    # accel_tilt_by_omega_tilt
-    fx[1, 1] = (inverse_mass_tilt_slide_tilt_sq * (carried_tilt_by_omega_tilt
-        * force_tilt_by_carried_tilt - minus_holding_tilt_by_omega_tilt))
+    b_tilt_plus_carried_tilt_by_omega_tilt_term = b_tilt + carried_tilt_by_omega_tilt_term
+    fx[1, 1] = (inverse_mass_tilt_slide_tilt_sq * (-b_tilt_plus_carried_tilt_by_omega_tilt_term
+        + carried_tilt_by_omega_tilt * force_tilt_by_carried_tilt))  # accel_tilt_by_omega_tilt
     driving_torque_tilt_by_i_tilt = K_t_tilt * ratio_tilt
     # rate_of_i_tilt_by_omega_tilt
     fx[2, 1] = -driving_torque_tilt_by_i_tilt * rate_of_i_tilt_by_u_tilt
@@ -586,7 +587,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     fp[1, 9] = (inverse_mass_tilt_slide_tilt_sq * (carried_tilt_by_b_motor_tilt
         * force_tilt_by_carried_tilt + driving_torque_tilt_by_b_motor_tilt))
     ratio_tilt_by_theta_tilt_by_N_tilt = (ratio_tilt_by_theta_tilt_term_2
-        - ratio_tilt_by_theta_tilt_term_5)
+        - ratio_tilt_by_theta_tilt_term_4)
     driving_torque_tilt_by_N_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
         * ratio_tilt_by_theta_tilt_by_N_tilt + force_tilt_by_ratio_tilt * ratio_tilt_by_N_tilt)
     carried_tilt_by_N_tilt = (carried_tilt_by_ratio_tilt * ratio_tilt_by_N_tilt
@@ -599,33 +600,39 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * lost_lowering_tilt_by_N_tilt + force_tilt_by_lost_raising_tilt
         * lost_raising_tilt_by_N_tilt))  # accel_tilt_by_N_tilt
     # rate_of_i_tilt_by_N_tilt
-    fp[2, 10] = -rate_of_i_tilt_by_theta_tilt_term * ratio_tilt_by_N_tilt
+    fp[2, 10] = -K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_N_tilt
     lost_lowering_tilt_by_lowered_tilt = (-inertia_tilt * lost_lowering_tilt_by_theta_tilt_term_2
         - lost_lowering_tilt_term)
     accel_tilt_by_lowered_tilt = (force_tilt_by_lost_lowering_tilt * inverse_mass_tilt_slide_tilt_sq
         * lost_lowering_tilt_by_lowered_tilt)
     lost_raising_tilt_by_raised_tilt = (-inertia_tilt * lost_raising_tilt_by_theta_tilt_term_2
-        + lost_raising_tilt_term)
+        + lost_raising_tilt_by_theta_tilt_term_inverse)
     accel_tilt_by_raised_tilt = (force_tilt_by_lost_raising_tilt * inverse_mass_tilt_slide_tilt_sq
         * lost_raising_tilt_by_raised_tilt)
-    lowered_tilt_by_lead_tilt_term = lead_tilt_inverse * lowered_tilt_term_inverse
-    lowered_tilt_term_inverse_sq = 1.0 / (lowered_tilt_term * lowered_tilt_term)
+    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
+    lowered_tilt_by_lead_tilt_term = (1.0 / (d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt
+        * d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt))
     lead_tilt_inverse_sq = 1.0 / (lead_tilt * lead_tilt)
     d_screw_tilt_pi_lead_tilt_inverse_sq = d_screw_tilt_pi * lead_tilt_inverse_sq
-    lowered_tilt_by_lead_tilt = (d_screw_tilt_pi * lowered_tilt_by_lead_tilt_term
-        + d_screw_tilt_pi_f_screw_tilt * lead_tilt_inverse * lowered_tilt_term_2
-        * lowered_tilt_term_inverse_sq + d_screw_tilt_pi_lead_tilt_inverse_sq * lowered_tilt_term_3)
-    raised_tilt_by_lead_tilt_term = lead_tilt_inverse * raised_tilt_term_inverse
-    raised_tilt_by_lead_tilt_term_2 = raised_tilt_term_2 / (raised_tilt_term * raised_tilt_term)
-    raised_tilt_by_lead_tilt_term_3 = lead_tilt_inverse * raised_tilt_by_lead_tilt_term_2
-    raised_tilt_by_lead_tilt = (d_screw_tilt_pi * raised_tilt_by_lead_tilt_term
-        + d_screw_tilt_pi_f_screw_tilt * raised_tilt_by_lead_tilt_term_3
-        - d_screw_tilt_pi_lead_tilt_inverse_sq * raised_tilt_term_3)
-    ratio_tilt_by_lead_tilt_term = math.pi * lead_tilt_inverse_sq * length_tilt_inverse
-    ratio_tilt_by_lead_tilt = -N_tilt * ratio_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt_term
+    lowered_tilt_by_lead_tilt = (d_screw_tilt_pi * lead_tilt_inverse_lowered_tilt_term
+        + d_screw_tilt_pi_f_screw_tilt * d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt
+        * lead_tilt_inverse * lowered_tilt_by_lead_tilt_term + d_screw_tilt_pi_lead_tilt_inverse_sq
+        * lowered_tilt_term_2)
+    lead_tilt_inverse_raised_tilt_term = lead_tilt_inverse * raised_tilt_term
+    raised_tilt_by_lead_tilt_term = (d_screw_tilt_pi_f_screw_tilt_plus_lead_tilt
+        / (d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt
+        * d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt))
+    raised_tilt_by_lead_tilt_term_2 = lead_tilt_inverse * raised_tilt_by_lead_tilt_term
+    raised_tilt_by_lead_tilt = (d_screw_tilt_pi * lead_tilt_inverse_raised_tilt_term
+        + d_screw_tilt_pi_f_screw_tilt * raised_tilt_by_lead_tilt_term_2
+        - d_screw_tilt_pi_lead_tilt_inverse_sq * raised_tilt_term_2)
+    lead_tilt_inverse_sq_length_tilt_inverse_pi = (math.pi * lead_tilt_inverse_sq
+        * length_tilt_inverse)
+    ratio_tilt_by_lead_tilt = (-N_tilt * lead_tilt_inverse_sq_length_tilt_inverse_pi
+        * ratio_tilt_by_N_tilt_term)
     ratio_tilt_by_theta_tilt_by_lead_tilt = (math.pi * N_tilt * lead_tilt_inverse_sq
         * length_tilt_by_theta_tilt * length_tilt_inverse_sq * ratio_tilt_by_N_tilt_term
-        - N_tilt_ratio_tilt_by_theta_tilt_term * ratio_tilt_by_lead_tilt_term)
+        - N_tilt_ratio_tilt_by_theta_tilt_term * lead_tilt_inverse_sq_length_tilt_inverse_pi)
     driving_torque_tilt_by_lead_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
         * ratio_tilt_by_theta_tilt_by_lead_tilt + force_tilt_by_ratio_tilt
         * ratio_tilt_by_lead_tilt)
@@ -641,41 +648,41 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + force_tilt_by_lost_lowering_tilt * lost_lowering_tilt_by_lead_tilt
         + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_lead_tilt))
     # rate_of_i_tilt_by_lead_tilt
-    fp[2, 11] = -rate_of_i_tilt_by_theta_tilt_term * ratio_tilt_by_lead_tilt
+    fp[2, 11] = -K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_lead_tilt
     d_screw_tilt_pi_sq = (math.pi * math.pi) * d_screw_tilt
     d_screw_tilt_pi_sq_f_screw_tilt = d_screw_tilt_pi_sq * f_screw_tilt
-    lowered_tilt_by_d_screw_tilt = ((math.pi * math.pi) * d_screw_tilt * lead_tilt_inverse
-        * lowered_tilt_term_2 * lowered_tilt_term_inverse_sq - d_screw_tilt_pi_sq_f_screw_tilt
-        * lowered_tilt_by_lead_tilt_term - lead_tilt_inverse_pi * lowered_tilt_term_3)
-    raised_tilt_by_d_screw_tilt = (-d_screw_tilt_pi_sq * raised_tilt_by_lead_tilt_term_3
-        + d_screw_tilt_pi_sq_f_screw_tilt * raised_tilt_by_lead_tilt_term
-        + lead_tilt_inverse_pi * raised_tilt_term_3)
+    lowered_tilt_by_d_screw_tilt = ((math.pi * math.pi) * d_screw_tilt
+        * d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt * lead_tilt_inverse
+        * lowered_tilt_by_lead_tilt_term - d_screw_tilt_pi_sq_f_screw_tilt
+        * lead_tilt_inverse_lowered_tilt_term - lead_tilt_inverse_pi * lowered_tilt_term_2)
+    raised_tilt_by_d_screw_tilt = (-d_screw_tilt_pi_sq * raised_tilt_by_lead_tilt_term_2
+        + d_screw_tilt_pi_sq_f_screw_tilt * lead_tilt_inverse_raised_tilt_term
+        + lead_tilt_inverse_pi * raised_tilt_term_2)
     fp[1, 12] = (accel_tilt_by_lowered_tilt * lowered_tilt_by_d_screw_tilt
         + accel_tilt_by_raised_tilt * raised_tilt_by_d_screw_tilt)  # accel_tilt_by_d_screw_tilt
     d_screw_tilt_sq_pi_sq = (math.pi * math.pi) * (d_screw_tilt * d_screw_tilt)
-    lowered_tilt_by_f_screw_tilt = (math.pi * d_screw_tilt * lowered_tilt_term_2
-        * lowered_tilt_term_inverse_sq - d_screw_tilt_sq_pi_sq * lowered_tilt_by_lead_tilt_term)
-    raised_tilt_by_f_screw_tilt = (d_screw_tilt_pi * raised_tilt_by_lead_tilt_term_2
-        + d_screw_tilt_sq_pi_sq * raised_tilt_by_lead_tilt_term)
+    lowered_tilt_by_f_screw_tilt = (math.pi * d_screw_tilt
+        * d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt * lowered_tilt_by_lead_tilt_term
+        - d_screw_tilt_sq_pi_sq * lead_tilt_inverse_lowered_tilt_term)
+    raised_tilt_by_f_screw_tilt = (d_screw_tilt_pi * raised_tilt_by_lead_tilt_term
+        + d_screw_tilt_sq_pi_sq * lead_tilt_inverse_raised_tilt_term)
     fp[1, 13] = (accel_tilt_by_lowered_tilt * lowered_tilt_by_f_screw_tilt
         + accel_tilt_by_raised_tilt * raised_tilt_by_f_screw_tilt)  # accel_tilt_by_f_screw_tilt
     cos_tilt_half_length_tilt_inverse = cos_tilt * half_length_tilt_inverse
     ratio_tilt_by_linkage_cos_tilt_term = N_tilt * lead_tilt_inverse_pi_length_tilt_inverse
-    ratio_tilt_by_linkage_cos_tilt_term_2 = ratio_tilt_by_linkage_cos_tilt_term * sin_tilt
+    ratio_tilt_by_linkage_cos_tilt_term_sin_tilt = ratio_tilt_by_linkage_cos_tilt_term * sin_tilt
     ratio_tilt_by_linkage_cos_tilt = (-cos_tilt_half_length_tilt_inverse * ratio_tilt_by_length_tilt
-        + ratio_tilt_by_linkage_cos_tilt_term_2)
+        + ratio_tilt_by_linkage_cos_tilt_term_sin_tilt)
     half_length_tilt_inverse_sin_tilt = half_length_tilt_inverse * sin_tilt
-    length_tilt_by_theta_tilt_by_linkage_cos_tilt = (cos_tilt
-        * length_tilt_by_theta_tilt_by_theta_tilt_term * ratio_tilt_by_N_tilt_term
-        + half_length_tilt_inverse_sin_tilt)
-    ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term = (cos_tilt
-        * ratio_tilt_by_linkage_cos_tilt_term)
-    ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term_2 = (N_tilt * length_tilt_by_theta_tilt
-        * ratio_tilt_by_theta_tilt_term_3)
+    length_tilt_by_theta_tilt_by_linkage_cos_tilt = (cos_tilt * quarter_length_tilt_inverse_cubed
+        * ratio_tilt_by_N_tilt_term + half_length_tilt_inverse_sin_tilt)
+    cos_tilt_ratio_tilt_by_linkage_cos_tilt_term = cos_tilt * ratio_tilt_by_linkage_cos_tilt_term
+    ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term = (N_tilt
+        * lead_tilt_inverse_pi_length_tilt_inverse_sq * length_tilt_by_theta_tilt)
     ratio_tilt_by_theta_tilt_by_linkage_cos_tilt = (-cos_tilt_half_length_tilt_inverse
-        * ratio_tilt_by_theta_tilt_by_length_tilt + length_tilt_by_theta_tilt_by_linkage_cos_tilt
-        * ratio_tilt_by_length_tilt + ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term
-        - ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term_2 * sin_tilt)
+        * ratio_tilt_by_theta_tilt_by_length_tilt + cos_tilt_ratio_tilt_by_linkage_cos_tilt_term
+        + length_tilt_by_theta_tilt_by_linkage_cos_tilt * ratio_tilt_by_length_tilt
+        - ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term * sin_tilt)
     driving_torque_tilt_by_linkage_cos_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
         * ratio_tilt_by_theta_tilt_by_linkage_cos_tilt + force_tilt_by_ratio_tilt
         * ratio_tilt_by_linkage_cos_tilt)
@@ -691,14 +698,14 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + driving_torque_tilt_by_linkage_cos_tilt + force_tilt_by_lost_lowering_tilt
         * lost_lowering_tilt_by_linkage_cos_tilt + force_tilt_by_lost_raising_tilt
         * lost_raising_tilt_by_linkage_cos_tilt))
-    ratio_tilt_by_linkage_sin_tilt = (-half_length_tilt_inverse_sin_tilt * ratio_tilt_by_length_tilt
-        - ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term)
+    ratio_tilt_by_linkage_sin_tilt = (-cos_tilt_ratio_tilt_by_linkage_cos_tilt_term
+        - half_length_tilt_inverse_sin_tilt * ratio_tilt_by_length_tilt)
     length_tilt_by_theta_tilt_by_linkage_sin_tilt = (-cos_tilt_half_length_tilt_inverse
         + 0.25 * length_tilt_inverse_cubed * ratio_tilt_by_N_tilt_term * sin_tilt)
     ratio_tilt_by_theta_tilt_by_linkage_sin_tilt = (cos_tilt
-        * ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term_2 - half_length_tilt_inverse_sin_tilt
+        * ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term - half_length_tilt_inverse_sin_tilt
         * ratio_tilt_by_theta_tilt_by_length_tilt + length_tilt_by_theta_tilt_by_linkage_sin_tilt
-        * ratio_tilt_by_length_tilt + ratio_tilt_by_linkage_cos_tilt_term_2)
+        * ratio_tilt_by_length_tilt + ratio_tilt_by_linkage_cos_tilt_term_sin_tilt)
     driving_torque_tilt_by_linkage_sin_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
         * ratio_tilt_by_theta_tilt_by_linkage_sin_tilt + force_tilt_by_ratio_tilt
         * ratio_tilt_by_linkage_sin_tilt)
@@ -716,10 +723,10 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * lost_raising_tilt_by_linkage_sin_tilt))
     linkage_cos_tilt_by_l_ground_tilt = 2.0 * l_ground_tilt
     linkage_sin_tilt_inverse = 1.0 / linkage_sin_tilt
-    linkage_sin_tilt_by_l_ground_tilt_term = linkage_cos_tilt * linkage_sin_tilt_inverse
-    linkage_sin_tilt_by_l_ground_tilt = (l_ground_tilt * linkage_sin_tilt_inverse
-        * linkage_sin_tilt_term - linkage_cos_tilt_by_l_ground_tilt
-        * linkage_sin_tilt_by_l_ground_tilt_term)
+    linkage_cos_tilt_linkage_sin_tilt_inverse = linkage_cos_tilt * linkage_sin_tilt_inverse
+    linkage_sin_tilt_by_l_ground_tilt = (four_times_r_arm_tilt_sq * l_ground_tilt
+        * linkage_sin_tilt_inverse - linkage_cos_tilt_by_l_ground_tilt
+        * linkage_cos_tilt_linkage_sin_tilt_inverse)
     length_tilt_by_l_ground_tilt = l_ground_tilt * length_tilt_inverse
     ratio_tilt_by_l_ground_tilt = length_tilt_by_l_ground_tilt * ratio_tilt_by_length_tilt
     length_tilt_by_theta_tilt_by_l_ground_tilt_term = (0.5 * length_tilt_inverse_cubed
@@ -745,17 +752,17 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + driving_torque_tilt_by_l_ground_tilt + force_tilt_by_lost_lowering_tilt
         * lost_lowering_tilt_by_l_ground_tilt + force_tilt_by_lost_raising_tilt
         * lost_raising_tilt_by_l_ground_tilt))  # accel_tilt_by_l_ground_tilt
-    rate_of_i_tilt_by_l_ground_tilt_term = (rate_of_i_tilt_by_theta_tilt_term
+    rate_of_i_tilt_by_l_ground_tilt_term = (K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt
         * ratio_tilt_by_linkage_cos_tilt)
-    rate_of_i_tilt_by_l_ground_tilt_term_2 = (rate_of_i_tilt_by_theta_tilt_term
+    rate_of_i_tilt_by_l_ground_tilt_term_2 = (K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt
         * ratio_tilt_by_linkage_sin_tilt)
     # rate_of_i_tilt_by_l_ground_tilt
-    fp[2, 14] = (-linkage_cos_tilt_by_l_ground_tilt * rate_of_i_tilt_by_l_ground_tilt_term
-        - linkage_sin_tilt_by_l_ground_tilt * rate_of_i_tilt_by_l_ground_tilt_term_2
-        - rate_of_i_tilt_by_theta_tilt_term * ratio_tilt_by_l_ground_tilt)
+    fp[2, 14] = (-K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_l_ground_tilt
+        - linkage_cos_tilt_by_l_ground_tilt * rate_of_i_tilt_by_l_ground_tilt_term
+        - linkage_sin_tilt_by_l_ground_tilt * rate_of_i_tilt_by_l_ground_tilt_term_2)
     linkage_cos_tilt_by_l_min_tilt = -2.0 * l_min_tilt_plus_s_start_tilt
     linkage_sin_tilt_by_l_min_tilt = (-linkage_cos_tilt_by_l_min_tilt
-        * linkage_sin_tilt_by_l_ground_tilt_term)
+        * linkage_cos_tilt_linkage_sin_tilt_inverse)
     accel_tilt_by_l_min_tilt = (accel_tilt_by_linkage_cos_tilt * linkage_cos_tilt_by_l_min_tilt
         + accel_tilt_by_linkage_sin_tilt * linkage_sin_tilt_by_l_min_tilt)
     fp[1, 15] = accel_tilt_by_l_min_tilt
@@ -765,7 +772,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     fp[2, 15] = rate_of_i_tilt_by_l_min_tilt
     linkage_cos_tilt_by_r_arm_tilt = 2.0 * r_arm_tilt
     linkage_sin_tilt_by_r_arm_tilt = (4.0 * l_ground_tilt_sq * linkage_sin_tilt_inverse * r_arm_tilt
-        - linkage_cos_tilt_by_r_arm_tilt * linkage_sin_tilt_by_l_ground_tilt_term)
+        - linkage_cos_tilt_by_r_arm_tilt * linkage_cos_tilt_linkage_sin_tilt_inverse)
     length_tilt_by_r_arm_tilt = length_tilt_inverse * r_arm_tilt
     ratio_tilt_by_r_arm_tilt = length_tilt_by_r_arm_tilt * ratio_tilt_by_length_tilt
     length_tilt_by_theta_tilt_by_r_arm_tilt = (-length_tilt_by_theta_tilt_by_l_ground_tilt_term
@@ -788,9 +795,9 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * lost_lowering_tilt_by_r_arm_tilt + force_tilt_by_lost_raising_tilt
         * lost_raising_tilt_by_r_arm_tilt))  # accel_tilt_by_r_arm_tilt
     # rate_of_i_tilt_by_r_arm_tilt
-    fp[2, 16] = (-linkage_cos_tilt_by_r_arm_tilt * rate_of_i_tilt_by_l_ground_tilt_term
-        - linkage_sin_tilt_by_r_arm_tilt * rate_of_i_tilt_by_l_ground_tilt_term_2
-        - rate_of_i_tilt_by_theta_tilt_term * ratio_tilt_by_r_arm_tilt)
+    fp[2, 16] = (-K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_r_arm_tilt
+        - linkage_cos_tilt_by_r_arm_tilt * rate_of_i_tilt_by_l_ground_tilt_term
+        - linkage_sin_tilt_by_r_arm_tilt * rate_of_i_tilt_by_l_ground_tilt_term_2)
     fp[1, 17] = accel_tilt_by_l_min_tilt  # accel_tilt_by_s_start_tilt
     fp[2, 17] = rate_of_i_tilt_by_l_min_tilt  # rate_of_i_tilt_by_s_start_tilt
     fp[1, 19] = (accel_tilt_by_gravity_cos_tilt * gravity_cos_tilt_by_gravity
@@ -811,7 +818,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + 0.5 * raised_tilt_minus_lowered_tilt * sign_load_torque_tilt)
     # backward_tilt_by_theta_tilt
     gx[2, 0] = -backward_tilt_by_theta_tilt_term * carried_tilt_by_theta_tilt_term
-    gx[0, 1] = -minus_holding_tilt_by_omega_tilt  # holding_tilt_by_omega_tilt
+    gx[0, 1] = -b_tilt_plus_carried_tilt_by_omega_tilt_term  # holding_tilt_by_omega_tilt
     gx[1, 1] = -b_tilt * forward_tilt_by_theta_tilt_term_2  # forward_tilt_by_omega_tilt
     gx[2, 1] = -b_tilt * backward_tilt_by_theta_tilt_term  # backward_tilt_by_omega_tilt
     gx[0, 2] = driving_torque_tilt_by_i_tilt  # holding_tilt_by_i_tilt
@@ -1024,4 +1031,4 @@ EFFECTS = (
      "linear actuator with lead screw and linkage",
      "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6", "", False),
 )
-# END sha256 e52dcc349b269c6b1c1b35827461bea69e84335ccaba56770b519e4103630b14
+# END sha256 6672dddbe102e9215418ca76af04e299393161b31de01c2049c7fc2f1a249932
