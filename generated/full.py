@@ -101,7 +101,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "1edd4bb87e7b9e79"
+MODEL_HASH = "f322bb2ed40fe0ea"
 NAME = "full"
 TITLE = "Both axes of the thesis, all drives"
 # How many numbers `prepare` writes.
@@ -260,11 +260,12 @@ def mass_and_forces(t, x, u, p, m, c):
         + inertia_pan_sin_sq_tilt * sin_tilt)
     coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
     omega_gear_pan_minus_omega_pan = omega_gear_pan - omega_pan
-    shaft_torque_pan_term = d_shaft_pan * omega_gear_pan_minus_omega_pan
+    d_shaft_pan_omega_gear_pan_minus_omega_pan = d_shaft_pan * omega_gear_pan_minus_omega_pan
     theta_pan_minus_theta_gear_pan = -theta_gear_pan + theta_pan
-    shaft_torque_pan_term_2 = -half_gap_pan * side_pan - theta_pan_minus_theta_gear_pan
-    k_shaft_pan_shaft_torque_pan_term_2 = k_shaft_pan * shaft_torque_pan_term_2
-    shaft_torque_pan = active_pan * (k_shaft_pan_shaft_torque_pan_term_2 + shaft_torque_pan_term)
+    shaft_torque_pan_term = -half_gap_pan * side_pan - theta_pan_minus_theta_gear_pan
+    k_shaft_pan_shaft_torque_pan_term = k_shaft_pan * shaft_torque_pan_term
+    shaft_torque_pan = (active_pan * (d_shaft_pan_omega_gear_pan_minus_omega_pan
+        + k_shaft_pan_shaft_torque_pan_term))
     force_pan = (-b_pan * omega_pan - omega_tilt * (coriolis
         + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt))
         + shaft_torque_pan)
@@ -277,27 +278,29 @@ def mass_and_forces(t, x, u, p, m, c):
     linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
     length_tilt = (math.sqrt(-cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq
         - linkage_sin_tilt_sin_tilt))
-    ratio_tilt_term = math.pi * N_tilt * lead_tilt_inverse / length_tilt
-    ratio_tilt_term_2 = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
-    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
+    N_tilt_lead_tilt_inverse_pi_per_length_tilt = math.pi * N_tilt * lead_tilt_inverse / length_tilt
+    ratio_tilt_term = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
+    ratio_tilt = N_tilt_lead_tilt_inverse_pi_per_length_tilt * ratio_tilt_term
     ratio_tilt_sq = ratio_tilt * ratio_tilt
     J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
     lost_lowering_tilt = ((1.0 - lowered_tilt) / abs(J_motor_tilt_ratio_tilt_sq
         + load_inertia_tilt * lowered_tilt))
     lost_raising_tilt = ((raised_tilt - 1.0) / (J_motor_tilt_ratio_tilt_sq
         + load_inertia_tilt * raised_tilt))
-    length_tilt_by_theta_tilt = 0.5 * ratio_tilt_term_2 / length_tilt
+    length_tilt_by_theta_tilt = 0.5 * ratio_tilt_term / length_tilt
     ratio_tilt_by_theta_tilt = (-math.pi * N_tilt * lead_tilt_inverse * length_tilt_by_theta_tilt
-        * ratio_tilt_term_2 / (length_tilt * length_tilt) + ratio_tilt_term
-        * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt))
+        * ratio_tilt_term / (length_tilt * length_tilt)
+        + N_tilt_lead_tilt_inverse_pi_per_length_tilt * (cos_tilt_linkage_cos_tilt
+        + linkage_sin_tilt_sin_tilt))
     omega_tilt_sq = omega_tilt * omega_tilt
     driving_torque_tilt_term = J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
     omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
     driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
     driving_torque_tilt = -driving_torque_tilt_term + driving_torque_tilt_term_2 * ratio_tilt
     force_pan_mass_pan_tilt = force_pan * mass_pan_tilt
+    minus_gravity_torque_tilt = cos_tilt * gravity_cos_tilt + gravity_sin_tilt * sin_tilt
     load_torque_tilt_term = (-b_tilt * omega_tilt + 0.5 * coriolis * omega_pan
-        + cos_tilt * gravity_cos_tilt + gravity_sin_tilt * sin_tilt)
+        + minus_gravity_torque_tilt)
     load_torque_tilt = -force_pan_mass_pan_tilt * mass_pan_inverse + load_torque_tilt_term
     carried_tilt = (-J_motor_tilt_ratio_tilt_sq * load_torque_tilt
         + driving_torque_tilt * load_inertia_tilt)
@@ -320,12 +323,13 @@ def mass_and_forces(t, x, u, p, m, c):
     force_gear_pan = K_t_pan * N_pan * i_pan - force_gear_pan_term - shaft_torque_pan
     rate_of_i_pan = (-K_t_pan_N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
     rate_of_i_tilt = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
-    return (cos_tilt, sin_tilt, omega_gear_pan_minus_omega_pan, shaft_torque_pan_term,
-        theta_pan_minus_theta_gear_pan, shaft_torque_pan_term_2,
-        k_shaft_pan_shaft_torque_pan_term_2, shaft_torque_pan, force_pan, mass_pan, mass_pan_tilt,
-        mass_pan_tilt_sq, ratio_tilt_sq, omega_tilt_sq, force_pan_mass_pan_tilt, load_torque_tilt,
-        force_tilt_term, force_tilt_term_2, force_tilt, mass_tilt, omega_gear_pan_sq,
-        force_gear_pan_term, force_gear_pan, rate_of_i_pan, rate_of_i_tilt)
+    return (cos_tilt, sin_tilt, omega_gear_pan_minus_omega_pan,
+        d_shaft_pan_omega_gear_pan_minus_omega_pan, theta_pan_minus_theta_gear_pan,
+        shaft_torque_pan_term, k_shaft_pan_shaft_torque_pan_term, shaft_torque_pan, force_pan,
+        mass_pan, mass_pan_tilt, mass_pan_tilt_sq, ratio_tilt_sq, omega_tilt_sq,
+        force_pan_mass_pan_tilt, minus_gravity_torque_tilt, load_torque_tilt, force_tilt_term,
+        force_tilt_term_2, force_tilt, mass_tilt, omega_gear_pan_sq, force_gear_pan_term,
+        force_gear_pan, rate_of_i_pan, rate_of_i_tilt)
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -355,9 +359,9 @@ def prepared_derivative(t, x, u, p, m, c, dx):
     """
     forces = mass_and_forces(t, x, u, p, m, c)
     force_pan, mass_pan, mass_pan_tilt = forces[8], forces[9], forces[10]
-    mass_pan_tilt_sq, force_pan_mass_pan_tilt, force_tilt = forces[11], forces[14], forces[18]
-    mass_tilt, force_gear_pan, rate_of_i_pan = forces[19], forces[22], forces[23]
-    rate_of_i_tilt = forces[24]
+    mass_pan_tilt_sq, force_pan_mass_pan_tilt, force_tilt = forces[11], forces[14], forces[19]
+    mass_tilt, force_gear_pan, rate_of_i_pan = forces[20], forces[23], forces[24]
+    rate_of_i_tilt = forces[25]
     omega_pan, omega_tilt, omega_gear_pan = x[2], x[3], x[5]
     slide_pan, slide_tilt = m[0], m[1]
     inverse_mass_gear_pan = c[16]
@@ -399,10 +403,11 @@ def guards(t, x, u, p, m, g):
     """
     c = constants(p)
     forces = mass_and_forces(t, x, u, p, m, c)
-    shaft_torque_pan_term, theta_pan_minus_theta_gear_pan = forces[3], forces[4]
-    shaft_torque_pan, force_pan, mass_pan = forces[7], forces[8], forces[9]
-    mass_pan_tilt, mass_pan_tilt_sq, load_torque_tilt = forces[10], forces[11], forces[15]
-    force_tilt_term_2, force_tilt, mass_tilt = forces[17], forces[18], forces[19]
+    d_shaft_pan_omega_gear_pan_minus_omega_pan = forces[3]
+    theta_pan_minus_theta_gear_pan, shaft_torque_pan, force_pan = forces[4], forces[7], forces[8]
+    mass_pan, mass_pan_tilt, mass_pan_tilt_sq = forces[9], forces[10], forces[11]
+    load_torque_tilt, force_tilt_term_2, force_tilt = forces[16], forces[18], forces[19]
+    mass_tilt = forces[20]
     i_pan = x[6]
     F_s_pan, a_F_s_pan, k_shaft_pan = p[14], p[18], p[22]
     slide_tilt = m[1]
@@ -424,10 +429,10 @@ def guards(t, x, u, p, m, g):
     g[5] = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt + forward_tilt_term
     g[6] = -theta_pan_minus_theta_gear_pan  # separation_pan
     g[7] = half_gap_pan
-    # upper_pan
-    g[8] = k_shaft_pan * (-half_gap_pan - theta_pan_minus_theta_gear_pan) + shaft_torque_pan_term
-    # lower_pan
-    g[9] = k_shaft_pan * (half_gap_pan - theta_pan_minus_theta_gear_pan) + shaft_torque_pan_term
+    g[8] = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (-half_gap_pan
+        - theta_pan_minus_theta_gear_pan))  # upper_pan
+    g[9] = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (half_gap_pan
+        - theta_pan_minus_theta_gear_pan))  # lower_pan
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -441,10 +446,10 @@ def energy(t, x, u, p, m, e):
     c = constants(p)
     forces = mass_and_forces(t, x, u, p, m, c)
     cos_tilt, sin_tilt, omega_gear_pan_minus_omega_pan = forces[0], forces[1], forces[2]
-    shaft_torque_pan_term, shaft_torque_pan_term_2 = forces[3], forces[5]
-    k_shaft_pan_shaft_torque_pan_term_2, mass_pan, mass_pan_tilt = forces[6], forces[9], forces[10]
-    ratio_tilt_sq, omega_tilt_sq, force_tilt_term = forces[12], forces[13], forces[16]
-    mass_tilt, omega_gear_pan_sq, force_gear_pan_term = forces[19], forces[20], forces[21]
+    d_shaft_pan_omega_gear_pan_minus_omega_pan, shaft_torque_pan_term = forces[3], forces[5]
+    k_shaft_pan_shaft_torque_pan_term, mass_pan, mass_pan_tilt = forces[6], forces[9], forces[10]
+    ratio_tilt_sq, omega_tilt_sq, force_tilt_term = forces[12], forces[13], forces[17]
+    mass_tilt, omega_gear_pan_sq, force_gear_pan_term = forces[20], forces[21], forces[22]
     omega_pan, omega_tilt, omega_gear_pan, i_pan, i_tilt = x[2], x[3], x[5], x[6], x[7]
     u_pan, u_tilt = u[0], u[1]
     b_pan, b_tilt, k_shaft_pan, L_pan, R_pan, L_tilt = p[11], p[12], p[22], p[24], p[25], p[29]
@@ -457,7 +462,7 @@ def energy(t, x, u, p, m, e):
     omega_pan_sq = omega_pan * omega_pan
     e[0] = (0.5 * L_pan * i_pan_sq + 0.5 * L_tilt * i_tilt_sq + cos_tilt * gravity_sin_tilt
         - gravity_cos_tilt * sin_tilt
-        + 0.5 * k_shaft_pan * (shaft_torque_pan_term_2 * shaft_torque_pan_term_2) * side_pan_sq
+        + 0.5 * k_shaft_pan * (shaft_torque_pan_term * shaft_torque_pan_term) * side_pan_sq
         + 0.5 * mass_gear_pan * omega_gear_pan_sq + 0.5 * mass_pan * omega_pan_sq
         + mass_pan_tilt * omega_pan * omega_tilt + 0.5 * mass_tilt * omega_tilt_sq)  # stored
     e[1] = i_pan * u_pan + i_tilt * u_tilt  # power_in
@@ -466,8 +471,9 @@ def energy(t, x, u, p, m, e):
     winding_loss_tilt = R_tilt * i_tilt_sq
     e[2] = (b_motor_tilt * omega_tilt_sq * ratio_tilt_sq + b_pan * omega_pan_sq
         + b_tilt * omega_tilt_sq + force_gear_pan_term * omega_gear_pan
-        + force_tilt_term * omega_tilt + twist_rate_pan * (active_pan * shaft_torque_pan_term
-        - k_shaft_pan_shaft_torque_pan_term_2 * (1.0 - active_pan)) + winding_loss_pan
+        + force_tilt_term * omega_tilt
+        + twist_rate_pan * (active_pan * d_shaft_pan_omega_gear_pan_minus_omega_pan
+        - k_shaft_pan_shaft_torque_pan_term * (1.0 - active_pan)) + winding_loss_pan
         + winding_loss_tilt)  # dissipated
 
 
@@ -482,9 +488,9 @@ def equation_error(t, x, u, p, m, r):
     """
     c = constants(p)
     forces = mass_and_forces(t, x, u, p, m, c)
-    force_pan, mass_pan, mass_pan_tilt, force_tilt = forces[8], forces[9], forces[10], forces[18]
-    mass_tilt, force_gear_pan, rate_of_i_pan = forces[19], forces[22], forces[23]
-    rate_of_i_tilt = forces[24]
+    force_pan, mass_pan, mass_pan_tilt, force_tilt = forces[8], forces[9], forces[10], forces[19]
+    mass_tilt, force_gear_pan, rate_of_i_pan = forces[20], forces[23], forces[24]
+    rate_of_i_tilt = forces[25]
     given_accel_pan, given_accel_tilt, given_accel_gear_pan = x[8], x[9], x[10]
     mass_gear_pan = c[15]
     r[0] = -force_pan + given_accel_pan * mass_pan + given_accel_tilt * mass_pan_tilt  # torque_pan
@@ -493,6 +499,44 @@ def equation_error(t, x, u, p, m, r):
     r[2] = -force_gear_pan + given_accel_gear_pan * mass_gear_pan  # torque_gear_pan
     r[3] = rate_of_i_pan
     r[4] = rate_of_i_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def mass_matrix(t, x, u, p, m, M):
+    """Write the mass matrix of the joints, then of gear outputs, into M.
+
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
+      see MODE_NAMES; M [3, 3] in kg m^2.
+    """
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    mass_pan, mass_pan_tilt, mass_tilt = forces[9], forces[10], forces[20]
+    mass_gear_pan = c[15]
+    M[0, 0] = mass_pan
+    M[0, 1] = mass_pan_tilt
+    M[0, 2] = 0.0  # mass_pan_gear_pan
+    M[1, 0] = mass_pan_tilt
+    M[1, 1] = mass_tilt
+    M[1, 2] = 0.0  # mass_tilt_gear_pan
+    M[2, 0] = 0.0  # mass_pan_gear_pan
+    M[2, 1] = 0.0  # mass_tilt_gear_pan
+    M[2, 2] = mass_gear_pan
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def gravity_torque(t, x, u, p, m, G):
+    """Write the torques that hold the machine against its weight into G.
+
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
+      see MODE_NAMES; G [3] in N m.
+    G: gravity_torque_pan, gravity_torque_tilt, gravity_torque_gear_pan.
+    """
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    minus_gravity_torque_tilt = forces[15]
+    G[0] = 0.0  # gravity_torque_pan
+    G[1] = -minus_gravity_torque_tilt  # gravity_torque_tilt
+    G[2] = 0.0  # gravity_torque_gear_pan
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -547,8 +591,8 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     linkage_cos_tilt = (l_ground_tilt_sq_plus_r_arm_tilt_sq
         - (l_min_tilt_plus_s_start_tilt * l_min_tilt_plus_s_start_tilt))
     cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
-    linkage_sin_tilt_term = 4.0 * r_arm_tilt_sq
-    linkage_sin_tilt = (math.sqrt(l_ground_tilt_sq * linkage_sin_tilt_term
+    four_times_r_arm_tilt_sq = 4.0 * r_arm_tilt_sq
+    linkage_sin_tilt = (math.sqrt(four_times_r_arm_tilt_sq * l_ground_tilt_sq
         - (linkage_cos_tilt * linkage_cos_tilt)))
     linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
     length_tilt = (math.sqrt(-cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq
@@ -579,39 +623,40 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * load_torque_tilt_by_theta_gear_pan)
     d_screw_tilt_pi = math.pi * d_screw_tilt
     f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
-    lowered_tilt_term = d_screw_tilt_pi + f_screw_tilt_lead_tilt
-    lowered_tilt_term_inverse = 1.0 / lowered_tilt_term
+    d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt = d_screw_tilt_pi + f_screw_tilt_lead_tilt
+    lowered_tilt_term = 1.0 / d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt
     d_screw_tilt_pi_f_screw_tilt = d_screw_tilt_pi * f_screw_tilt
-    lowered_tilt_term_2 = d_screw_tilt_pi_f_screw_tilt - lead_tilt
-    lowered_tilt_term_3 = lowered_tilt_term_2 * lowered_tilt_term_inverse
+    d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt = d_screw_tilt_pi_f_screw_tilt - lead_tilt
+    lowered_tilt_term_2 = d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt * lowered_tilt_term
     d_screw_tilt_pi_lead_tilt_inverse = d_screw_tilt_pi * lead_tilt_inverse
-    lowered_tilt = -d_screw_tilt_pi_lead_tilt_inverse * lowered_tilt_term_3
+    lowered_tilt = -d_screw_tilt_pi_lead_tilt_inverse * lowered_tilt_term_2
     one_minus_lowered_tilt = 1.0 - lowered_tilt
     load_inertia_tilt = inertia_tilt - mass_pan_inverse * mass_pan_tilt_sq
     lost_lowering_tilt_term = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt
     abs_lost_lowering_tilt_term_inverse = 1.0 / abs(lost_lowering_tilt_term)
     lost_lowering_tilt = abs_lost_lowering_tilt_term_inverse * one_minus_lowered_tilt
-    raised_tilt_term = d_screw_tilt_pi - f_screw_tilt_lead_tilt
-    raised_tilt_term_inverse = 1.0 / raised_tilt_term
-    raised_tilt_term_2 = d_screw_tilt_pi_f_screw_tilt + lead_tilt
-    raised_tilt_term_3 = raised_tilt_term_2 * raised_tilt_term_inverse
-    raised_tilt = d_screw_tilt_pi_lead_tilt_inverse * raised_tilt_term_3
+    d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt = d_screw_tilt_pi - f_screw_tilt_lead_tilt
+    raised_tilt_term = 1.0 / d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt
+    d_screw_tilt_pi_f_screw_tilt_plus_lead_tilt = d_screw_tilt_pi_f_screw_tilt + lead_tilt
+    raised_tilt_term_2 = d_screw_tilt_pi_f_screw_tilt_plus_lead_tilt * raised_tilt_term
+    raised_tilt = d_screw_tilt_pi_lead_tilt_inverse * raised_tilt_term_2
     raised_tilt_minus_one = raised_tilt - 1.0
     lost_raising_tilt_term = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * raised_tilt
     lost_raising_tilt_term_inverse = 1.0 / lost_raising_tilt_term
     lost_raising_tilt = lost_raising_tilt_term_inverse * raised_tilt_minus_one
-    accel_pan_by_theta_gear_pan_term = lost_lowering_tilt + lost_raising_tilt
+    lost_lowering_tilt_plus_lost_raising_tilt = lost_lowering_tilt + lost_raising_tilt
     ratio_tilt_by_theta_tilt_term = cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt
     ratio_tilt_by_theta_tilt_term_2 = (lead_tilt_inverse_pi_length_tilt_inverse
         * ratio_tilt_by_theta_tilt_term)
     half_length_tilt_inverse = 0.5 * length_tilt_inverse
     length_tilt_by_theta_tilt = half_length_tilt_inverse * ratio_tilt_by_N_tilt_term
     length_tilt_inverse_sq = 1.0 / (length_tilt * length_tilt)
-    ratio_tilt_by_theta_tilt_term_3 = lead_tilt_inverse_pi * length_tilt_inverse_sq
-    ratio_tilt_by_theta_tilt_term_4 = ratio_tilt_by_N_tilt_term * ratio_tilt_by_theta_tilt_term_3
-    ratio_tilt_by_theta_tilt_term_5 = length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_term_4
+    lead_tilt_inverse_pi_length_tilt_inverse_sq = lead_tilt_inverse_pi * length_tilt_inverse_sq
+    ratio_tilt_by_theta_tilt_term_3 = (lead_tilt_inverse_pi_length_tilt_inverse_sq
+        * ratio_tilt_by_N_tilt_term)
+    ratio_tilt_by_theta_tilt_term_4 = length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_term_3
     ratio_tilt_by_theta_tilt = (N_tilt * ratio_tilt_by_theta_tilt_term_2
-        - N_tilt * ratio_tilt_by_theta_tilt_term_5)
+        - N_tilt * ratio_tilt_by_theta_tilt_term_4)
     omega_tilt_sq = omega_tilt * omega_tilt
     omega_tilt_sq_ratio_tilt_by_theta_tilt = omega_tilt_sq * ratio_tilt_by_theta_tilt
     driving_torque_tilt_term = omega_tilt_sq_ratio_tilt_by_theta_tilt * ratio_tilt
@@ -644,10 +689,10 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     carried_tilt = (-J_motor_tilt_ratio_tilt_sq * load_torque_tilt
         + driving_torque_tilt * load_inertia_tilt)
     carried_tilt_slide_tilt = carried_tilt * slide_tilt
-    accel_pan_by_theta_gear_pan_term_2 = -0.5 * lost_lowering_tilt + 0.5 * lost_raising_tilt
-    force_tilt_by_carried_tilt = (-slide_tilt * (0.5 * accel_pan_by_theta_gear_pan_term * slide_tilt
-        * (0.0 if carried_tilt_slide_tilt == 0 else math.copysign(1, carried_tilt_slide_tilt))
-        + accel_pan_by_theta_gear_pan_term_2 * slide_tilt))
+    accel_pan_by_theta_gear_pan_term = -0.5 * lost_lowering_tilt + 0.5 * lost_raising_tilt
+    force_tilt_by_carried_tilt = (-slide_tilt * (accel_pan_by_theta_gear_pan_term * slide_tilt
+        + 0.5 * lost_lowering_tilt_plus_lost_raising_tilt * slide_tilt * (0.0
+        if carried_tilt_slide_tilt == 0 else math.copysign(1, carried_tilt_slide_tilt))))
     balance_tilt_by_theta_gear_pan = carried_tilt_by_theta_gear_pan * force_tilt_by_carried_tilt
     accel_pan_by_theta_gear_pan = (inverse_determinant * (-balance_tilt_by_theta_gear_pan
         * mass_pan_tilt_slide_tilt_sq + holding_pan_by_theta_pan * mass_tilt))
@@ -669,8 +714,9 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     half_abs_carried_tilt_slide_tilt = 0.5 * abs_carried_tilt_slide_tilt
     transmitted_torque_tilt = driving_torque_tilt_term_2 * ratio_tilt
     force_tilt = (-J_motor_tilt_driving_torque_tilt_term + load_torque_tilt_term
-        - slide_tilt * (accel_pan_by_theta_gear_pan_term * half_abs_carried_tilt_slide_tilt
-        + accel_pan_by_theta_gear_pan_term_2 * carried_tilt_slide_tilt) + transmitted_torque_tilt)
+        - slide_tilt * (accel_pan_by_theta_gear_pan_term * carried_tilt_slide_tilt
+        + half_abs_carried_tilt_slide_tilt * lost_lowering_tilt_plus_lost_raising_tilt)
+        + transmitted_torque_tilt)
     accel_pan = (inverse_determinant * (force_pan * mass_tilt
         - force_tilt * mass_pan_tilt_slide_tilt_sq))
     accel_tilt = (inverse_determinant_slide_tilt_sq * (-force_pan * mass_pan_tilt_slide_tilt_sq
@@ -688,14 +734,14 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt) - accel_pan_by_theta_tilt_term
         - accel_tilt * follower_coupling_tilt_by_theta_tilt)
     length_tilt_inverse_cubed = 1.0 / (length_tilt * length_tilt * length_tilt)
-    length_tilt_by_theta_tilt_by_theta_tilt_term = 0.25 * length_tilt_inverse_cubed
+    quarter_length_tilt_inverse_cubed = 0.25 * length_tilt_inverse_cubed
     length_tilt_by_theta_tilt_by_theta_tilt = (half_length_tilt_inverse
-        * ratio_tilt_by_theta_tilt_term - length_tilt_by_theta_tilt_by_theta_tilt_term
+        * ratio_tilt_by_theta_tilt_term - quarter_length_tilt_inverse_cubed
         * (ratio_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt_term))
     N_tilt_ratio_tilt_by_theta_tilt_term = N_tilt * ratio_tilt_by_theta_tilt_term
     ratio_tilt_by_theta_tilt_by_theta_tilt_term = (N_tilt_ratio_tilt_by_theta_tilt_term
-        * ratio_tilt_by_theta_tilt_term_3)
-    ratio_tilt_by_length_tilt = -N_tilt * ratio_tilt_by_theta_tilt_term_4
+        * lead_tilt_inverse_pi_length_tilt_inverse_sq)
+    ratio_tilt_by_length_tilt = -N_tilt * ratio_tilt_by_theta_tilt_term_3
     ratio_tilt_by_theta_tilt_by_length_tilt = (2.0 * math.pi * N_tilt * lead_tilt_inverse
         * length_tilt_by_theta_tilt * length_tilt_inverse_cubed * ratio_tilt_by_N_tilt_term
         - ratio_tilt_by_theta_tilt_by_theta_tilt_term)
@@ -771,9 +817,9 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     fx[3, 1] = (inverse_determinant_slide_tilt_sq * (-balance_pan_by_theta_tilt
         * mass_pan_tilt_slide_tilt_sq + balance_tilt_by_theta_tilt * mass_pan))
     rate_of_i_tilt_by_u_tilt = 1.0 / L_tilt
-    rate_of_i_tilt_by_theta_tilt_term = K_t_tilt * omega_tilt * rate_of_i_tilt_by_u_tilt
+    K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt = K_t_tilt * omega_tilt * rate_of_i_tilt_by_u_tilt
     # rate_of_i_tilt_by_theta_tilt
-    fx[7, 1] = -rate_of_i_tilt_by_theta_tilt_term * ratio_tilt_by_theta_tilt
+    fx[7, 1] = -K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_theta_tilt
     fx[0, 2] = 1.0  # rate_of_theta_pan_by_omega_pan
     follower_torque_tilt_by_omega_gear_pan = active_pan * d_shaft_pan
     follower_torque_tilt_by_omega_pan = (-b_pan - coriolis_by_omega_pan * omega_tilt
@@ -802,8 +848,8 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         - follower_torque_tilt_by_omega_tilt * mass_pan_inverse_mass_pan_tilt)
     carried_tilt_by_omega_tilt = (-J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_tilt
         - carried_tilt_by_omega_tilt_term * load_inertia_tilt)
-    accel_pan_by_omega_tilt_term = b_tilt + carried_tilt_by_omega_tilt_term
-    balance_tilt_by_omega_tilt = (-accel_pan_by_omega_tilt_term
+    b_tilt_plus_carried_tilt_by_omega_tilt_term = b_tilt + carried_tilt_by_omega_tilt_term
+    balance_tilt_by_omega_tilt = (-b_tilt_plus_carried_tilt_by_omega_tilt_term
         + carried_tilt_by_omega_tilt * force_tilt_by_carried_tilt)
     accel_pan_by_omega_tilt = (inverse_determinant * (-balance_tilt_by_omega_tilt
         * mass_pan_tilt_slide_tilt_sq + follower_torque_tilt_by_omega_tilt * mass_tilt))
@@ -842,13 +888,13 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     exp_minus_stribeck_square_pan = math.exp(-stribeck_square_pan)
     accel_gear_pan_by_omega_gear_pan_term = (exp_minus_stribeck_square_pan * (F_s_pan
         * one_plus_a_F_s_pan_slide_pan - coulomb_torque_pan))
-    accel_gear_pan_by_omega_gear_pan_term_2 = 2.0 * accel_gear_pan_by_omega_gear_pan_term
+    twice_accel_gear_pan_by_omega_gear_pan_term = 2.0 * accel_gear_pan_by_omega_gear_pan_term
     one_plus_a_F_v_pan_slide_pan = a_F_v_pan * slide_pan + 1.0
     viscous_coefficient_pan = F_v_pan * one_plus_a_F_v_pan_slide_pan
     # accel_gear_pan_by_omega_gear_pan
     fx[5, 5] = (inverse_mass_gear_pan_slide_pan_sq * (-follower_torque_tilt_by_omega_gear_pan
-        - slide_pan * (-accel_gear_pan_by_omega_gear_pan_term_2 * omega_gear_pan
-        * stribeck_square_pan_term + slide_pan * viscous_coefficient_pan)))
+        - slide_pan * (-omega_gear_pan * stribeck_square_pan_term
+        * twice_accel_gear_pan_by_omega_gear_pan_term + slide_pan * viscous_coefficient_pan)))
     rate_of_i_pan_by_u_pan = 1.0 / L_pan
     balance_gear_pan_by_i_pan = K_t_pan * N_pan
     # rate_of_i_pan_by_omega_gear_pan
@@ -862,8 +908,9 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + driving_torque_tilt_by_i_tilt)
     accel_pan_by_i_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_i_tilt
     fx[2, 7] = accel_pan_by_i_tilt
-    accel_tilt_by_i_tilt_term = inverse_determinant_slide_tilt_sq * mass_pan
-    fx[3, 7] = accel_tilt_by_i_tilt_term * balance_tilt_by_i_tilt  # accel_tilt_by_i_tilt
+    inverse_determinant_slide_tilt_sq_mass_pan = inverse_determinant_slide_tilt_sq * mass_pan
+    # accel_tilt_by_i_tilt
+    fx[3, 7] = balance_tilt_by_i_tilt * inverse_determinant_slide_tilt_sq_mass_pan
     fx[7, 7] = -R_tilt * rate_of_i_tilt_by_u_tilt  # rate_of_i_tilt_by_i_tilt
     fu[6, 0] = rate_of_i_pan_by_u_pan
     fu[7, 1] = rate_of_i_tilt_by_u_tilt
@@ -924,7 +971,8 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_load_inertia_tilt)
     accel_pan_by_inertia_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_inertia_tilt
     fp[2, 2] = accel_pan_by_inertia_tilt  # accel_pan_by_J_y_tilt
-    accel_tilt_by_inertia_tilt = accel_tilt_by_i_tilt_term * balance_tilt_by_inertia_tilt
+    accel_tilt_by_inertia_tilt = (balance_tilt_by_inertia_tilt
+        * inverse_determinant_slide_tilt_sq_mass_pan)
     fp[3, 2] = accel_tilt_by_inertia_tilt  # accel_tilt_by_J_y_tilt
     accel_pan_by_J_z_tilt = accel_pan_by_inertia_pan - accel_pan_by_inertia_pan_sin_sq_tilt
     fp[2, 3] = accel_pan_by_J_z_tilt
@@ -1029,8 +1077,10 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     accel_tilt_by_coupling_sin_tilt = (inverse_determinant_slide_tilt_sq
         * (-balance_pan_by_coupling_sin_tilt * mass_pan_tilt_slide_tilt_sq
         + balance_tilt_by_coupling_sin_tilt * mass_pan))
-    accel_tilt_by_gravity_cos_tilt = accel_tilt_by_i_tilt_term * balance_tilt_by_gravity_cos_tilt
-    accel_tilt_by_gravity_sin_tilt = accel_tilt_by_i_tilt_term * balance_tilt_by_gravity_sin_tilt
+    accel_tilt_by_gravity_cos_tilt = (balance_tilt_by_gravity_cos_tilt
+        * inverse_determinant_slide_tilt_sq_mass_pan)
+    accel_tilt_by_gravity_sin_tilt = (balance_tilt_by_gravity_sin_tilt
+        * inverse_determinant_slide_tilt_sq_mass_pan)
     accel_tilt_by_inertia_pan_sin_cos_tilt = (inverse_determinant_slide_tilt_sq
         * (-balance_pan_by_inertia_pan_sin_cos_tilt * mass_pan_tilt_slide_tilt_sq
         + balance_tilt_by_inertia_pan_sin_cos_tilt * mass_pan))
@@ -1094,12 +1144,13 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     balance_tilt_by_b_tilt = carried_tilt_by_b_tilt * force_tilt_by_carried_tilt - omega_tilt
     accel_pan_by_b_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_b_tilt
     fp[2, 12] = accel_pan_by_b_tilt
-    fp[3, 12] = accel_tilt_by_i_tilt_term * balance_tilt_by_b_tilt  # accel_tilt_by_b_tilt
+    # accel_tilt_by_b_tilt
+    fp[3, 12] = balance_tilt_by_b_tilt * inverse_determinant_slide_tilt_sq_mass_pan
     fp[5, 13] = (-inverse_mass_gear_pan_slide_pan_sq * slide_pan * (-exp_minus_stribeck_square_pan
         * one_plus_a_F_c_pan_slide_pan + one_plus_a_F_c_pan_slide_pan))  # accel_gear_pan_by_F_c_pan
     fp[5, 14] = (-exp_minus_stribeck_square_pan * inverse_mass_gear_pan_slide_pan_sq
         * one_plus_a_F_s_pan_slide_pan * slide_pan)  # accel_gear_pan_by_F_s_pan
-    accel_gear_pan_by_v_s_pan_term = accel_gear_pan_by_omega_gear_pan_term_2 * omega_gear_pan_sq
+    accel_gear_pan_by_v_s_pan_term = omega_gear_pan_sq * twice_accel_gear_pan_by_omega_gear_pan_term
     # accel_gear_pan_by_v_s_pan
     fp[5, 15] = (-accel_gear_pan_by_v_s_pan_term * inverse_mass_gear_pan_slide_pan_sq
         * one_plus_a_v_s_pan_slide_pan_inverse_sq * slide_pan / (v_s_pan * v_s_pan * v_s_pan))
@@ -1180,7 +1231,8 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + driving_torque_tilt_by_K_t_tilt)
     accel_pan_by_K_t_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_K_t_tilt
     fp[2, 31] = accel_pan_by_K_t_tilt
-    fp[3, 31] = accel_tilt_by_i_tilt_term * balance_tilt_by_K_t_tilt  # accel_tilt_by_K_t_tilt
+    # accel_tilt_by_K_t_tilt
+    fp[3, 31] = balance_tilt_by_K_t_tilt * inverse_determinant_slide_tilt_sq_mass_pan
     fp[7, 31] = -omega_tilt_ratio_tilt * rate_of_i_tilt_by_u_tilt  # rate_of_i_tilt_by_K_t_tilt
     carried_tilt_by_J_motor_tilt = (-driving_torque_tilt_term * load_inertia_tilt
         - load_torque_tilt * ratio_tilt_sq)
@@ -1193,7 +1245,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     accel_pan_by_J_motor_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_J_motor_tilt
     fp[2, 32] = accel_pan_by_J_motor_tilt
     # accel_tilt_by_J_motor_tilt
-    fp[3, 32] = accel_tilt_by_i_tilt_term * balance_tilt_by_J_motor_tilt
+    fp[3, 32] = balance_tilt_by_J_motor_tilt * inverse_determinant_slide_tilt_sq_mass_pan
     omega_tilt_ratio_tilt_sq = omega_tilt * ratio_tilt_sq
     carried_tilt_by_b_motor_tilt = -load_inertia_tilt * omega_tilt_ratio_tilt_sq
     balance_tilt_by_b_motor_tilt = (carried_tilt_by_b_motor_tilt * force_tilt_by_carried_tilt
@@ -1201,9 +1253,9 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     accel_pan_by_b_motor_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_b_motor_tilt
     fp[2, 33] = accel_pan_by_b_motor_tilt
     # accel_tilt_by_b_motor_tilt
-    fp[3, 33] = accel_tilt_by_i_tilt_term * balance_tilt_by_b_motor_tilt
+    fp[3, 33] = balance_tilt_by_b_motor_tilt * inverse_determinant_slide_tilt_sq_mass_pan
     ratio_tilt_by_theta_tilt_by_N_tilt = (ratio_tilt_by_theta_tilt_term_2
-        - ratio_tilt_by_theta_tilt_term_5)
+        - ratio_tilt_by_theta_tilt_term_4)
     driving_torque_tilt_by_N_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
         * ratio_tilt_by_theta_tilt_by_N_tilt + force_tilt_by_ratio_tilt * ratio_tilt_by_N_tilt)
     carried_tilt_by_N_tilt = (carried_tilt_by_ratio_tilt * ratio_tilt_by_N_tilt
@@ -1216,9 +1268,10 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_N_tilt)
     accel_pan_by_N_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_N_tilt
     fp[2, 34] = accel_pan_by_N_tilt
-    fp[3, 34] = accel_tilt_by_i_tilt_term * balance_tilt_by_N_tilt  # accel_tilt_by_N_tilt
+    # accel_tilt_by_N_tilt
+    fp[3, 34] = balance_tilt_by_N_tilt * inverse_determinant_slide_tilt_sq_mass_pan
     # rate_of_i_tilt_by_N_tilt
-    fp[7, 34] = -rate_of_i_tilt_by_theta_tilt_term * ratio_tilt_by_N_tilt
+    fp[7, 34] = -K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_N_tilt
     lost_lowering_tilt_by_lowered_tilt = (-abs_lost_lowering_tilt_term_inverse
         - load_inertia_tilt * lost_lowering_tilt_by_theta_tilt_term)
     balance_tilt_by_lowered_tilt = (force_tilt_by_lost_lowering_tilt
@@ -1228,24 +1281,30 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + lost_raising_tilt_term_inverse)
     balance_tilt_by_raised_tilt = force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_raised_tilt
     accel_pan_by_raised_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_raised_tilt
-    lowered_tilt_by_lead_tilt_term = lead_tilt_inverse * lowered_tilt_term_inverse
-    lowered_tilt_term_inverse_sq = 1.0 / (lowered_tilt_term * lowered_tilt_term)
+    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
+    lowered_tilt_by_lead_tilt_term = (1.0 / (d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt
+        * d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt))
     lead_tilt_inverse_sq = 1.0 / (lead_tilt * lead_tilt)
     d_screw_tilt_pi_lead_tilt_inverse_sq = d_screw_tilt_pi * lead_tilt_inverse_sq
-    lowered_tilt_by_lead_tilt = (d_screw_tilt_pi * lowered_tilt_by_lead_tilt_term
-        + d_screw_tilt_pi_f_screw_tilt * lead_tilt_inverse * lowered_tilt_term_2
-        * lowered_tilt_term_inverse_sq + d_screw_tilt_pi_lead_tilt_inverse_sq * lowered_tilt_term_3)
-    raised_tilt_by_lead_tilt_term = lead_tilt_inverse * raised_tilt_term_inverse
-    raised_tilt_by_lead_tilt_term_2 = raised_tilt_term_2 / (raised_tilt_term * raised_tilt_term)
-    raised_tilt_by_lead_tilt_term_3 = lead_tilt_inverse * raised_tilt_by_lead_tilt_term_2
-    raised_tilt_by_lead_tilt = (d_screw_tilt_pi * raised_tilt_by_lead_tilt_term
-        + d_screw_tilt_pi_f_screw_tilt * raised_tilt_by_lead_tilt_term_3
-        - d_screw_tilt_pi_lead_tilt_inverse_sq * raised_tilt_term_3)
-    ratio_tilt_by_lead_tilt_term = math.pi * lead_tilt_inverse_sq * length_tilt_inverse
-    ratio_tilt_by_lead_tilt = -N_tilt * ratio_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt_term
+    lowered_tilt_by_lead_tilt = (d_screw_tilt_pi * lead_tilt_inverse_lowered_tilt_term
+        + d_screw_tilt_pi_f_screw_tilt * d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt
+        * lead_tilt_inverse * lowered_tilt_by_lead_tilt_term + d_screw_tilt_pi_lead_tilt_inverse_sq
+        * lowered_tilt_term_2)
+    lead_tilt_inverse_raised_tilt_term = lead_tilt_inverse * raised_tilt_term
+    raised_tilt_by_lead_tilt_term = (d_screw_tilt_pi_f_screw_tilt_plus_lead_tilt
+        / (d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt
+        * d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt))
+    raised_tilt_by_lead_tilt_term_2 = lead_tilt_inverse * raised_tilt_by_lead_tilt_term
+    raised_tilt_by_lead_tilt = (d_screw_tilt_pi * lead_tilt_inverse_raised_tilt_term
+        + d_screw_tilt_pi_f_screw_tilt * raised_tilt_by_lead_tilt_term_2
+        - d_screw_tilt_pi_lead_tilt_inverse_sq * raised_tilt_term_2)
+    lead_tilt_inverse_sq_length_tilt_inverse_pi = (math.pi * lead_tilt_inverse_sq
+        * length_tilt_inverse)
+    ratio_tilt_by_lead_tilt = (-N_tilt * lead_tilt_inverse_sq_length_tilt_inverse_pi
+        * ratio_tilt_by_N_tilt_term)
     ratio_tilt_by_theta_tilt_by_lead_tilt = (math.pi * N_tilt * lead_tilt_inverse_sq
         * length_tilt_by_theta_tilt * length_tilt_inverse_sq * ratio_tilt_by_N_tilt_term
-        - N_tilt_ratio_tilt_by_theta_tilt_term * ratio_tilt_by_lead_tilt_term)
+        - N_tilt_ratio_tilt_by_theta_tilt_term * lead_tilt_inverse_sq_length_tilt_inverse_pi)
     driving_torque_tilt_by_lead_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
         * ratio_tilt_by_theta_tilt_by_lead_tilt + force_tilt_by_ratio_tilt
         * ratio_tilt_by_lead_tilt)
@@ -1261,31 +1320,36 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + accel_pan_by_lowered_tilt * lowered_tilt_by_lead_tilt
         + accel_pan_by_raised_tilt * raised_tilt_by_lead_tilt)
     fp[2, 35] = accel_pan_by_lead_tilt
-    accel_tilt_by_lowered_tilt = accel_tilt_by_i_tilt_term * balance_tilt_by_lowered_tilt
-    accel_tilt_by_raised_tilt = accel_tilt_by_i_tilt_term * balance_tilt_by_raised_tilt
-    fp[3, 35] = (accel_tilt_by_i_tilt_term * balance_tilt_by_lead_tilt
-        + accel_tilt_by_lowered_tilt * lowered_tilt_by_lead_tilt
-        + accel_tilt_by_raised_tilt * raised_tilt_by_lead_tilt)  # accel_tilt_by_lead_tilt
+    accel_tilt_by_lowered_tilt = (balance_tilt_by_lowered_tilt
+        * inverse_determinant_slide_tilt_sq_mass_pan)
+    accel_tilt_by_raised_tilt = (balance_tilt_by_raised_tilt
+        * inverse_determinant_slide_tilt_sq_mass_pan)
+    # accel_tilt_by_lead_tilt
+    fp[3, 35] = (accel_tilt_by_lowered_tilt * lowered_tilt_by_lead_tilt
+        + accel_tilt_by_raised_tilt * raised_tilt_by_lead_tilt
+        + balance_tilt_by_lead_tilt * inverse_determinant_slide_tilt_sq_mass_pan)
     # rate_of_i_tilt_by_lead_tilt
-    fp[7, 35] = -rate_of_i_tilt_by_theta_tilt_term * ratio_tilt_by_lead_tilt
+    fp[7, 35] = -K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_lead_tilt
     d_screw_tilt_pi_sq = (math.pi * math.pi) * d_screw_tilt
     d_screw_tilt_pi_sq_f_screw_tilt = d_screw_tilt_pi_sq * f_screw_tilt
-    lowered_tilt_by_d_screw_tilt = ((math.pi * math.pi) * d_screw_tilt * lead_tilt_inverse
-        * lowered_tilt_term_2 * lowered_tilt_term_inverse_sq - d_screw_tilt_pi_sq_f_screw_tilt
-        * lowered_tilt_by_lead_tilt_term - lead_tilt_inverse_pi * lowered_tilt_term_3)
-    raised_tilt_by_d_screw_tilt = (-d_screw_tilt_pi_sq * raised_tilt_by_lead_tilt_term_3
-        + d_screw_tilt_pi_sq_f_screw_tilt * raised_tilt_by_lead_tilt_term
-        + lead_tilt_inverse_pi * raised_tilt_term_3)
+    lowered_tilt_by_d_screw_tilt = ((math.pi * math.pi) * d_screw_tilt
+        * d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt * lead_tilt_inverse
+        * lowered_tilt_by_lead_tilt_term - d_screw_tilt_pi_sq_f_screw_tilt
+        * lead_tilt_inverse_lowered_tilt_term - lead_tilt_inverse_pi * lowered_tilt_term_2)
+    raised_tilt_by_d_screw_tilt = (-d_screw_tilt_pi_sq * raised_tilt_by_lead_tilt_term_2
+        + d_screw_tilt_pi_sq_f_screw_tilt * lead_tilt_inverse_raised_tilt_term
+        + lead_tilt_inverse_pi * raised_tilt_term_2)
     accel_pan_by_d_screw_tilt = (accel_pan_by_lowered_tilt * lowered_tilt_by_d_screw_tilt
         + accel_pan_by_raised_tilt * raised_tilt_by_d_screw_tilt)
     fp[2, 36] = accel_pan_by_d_screw_tilt
     fp[3, 36] = (accel_tilt_by_lowered_tilt * lowered_tilt_by_d_screw_tilt
         + accel_tilt_by_raised_tilt * raised_tilt_by_d_screw_tilt)  # accel_tilt_by_d_screw_tilt
     d_screw_tilt_sq_pi_sq = (math.pi * math.pi) * (d_screw_tilt * d_screw_tilt)
-    lowered_tilt_by_f_screw_tilt = (math.pi * d_screw_tilt * lowered_tilt_term_2
-        * lowered_tilt_term_inverse_sq - d_screw_tilt_sq_pi_sq * lowered_tilt_by_lead_tilt_term)
-    raised_tilt_by_f_screw_tilt = (d_screw_tilt_pi * raised_tilt_by_lead_tilt_term_2
-        + d_screw_tilt_sq_pi_sq * raised_tilt_by_lead_tilt_term)
+    lowered_tilt_by_f_screw_tilt = (math.pi * d_screw_tilt
+        * d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt * lowered_tilt_by_lead_tilt_term
+        - d_screw_tilt_sq_pi_sq * lead_tilt_inverse_lowered_tilt_term)
+    raised_tilt_by_f_screw_tilt = (d_screw_tilt_pi * raised_tilt_by_lead_tilt_term
+        + d_screw_tilt_sq_pi_sq * lead_tilt_inverse_raised_tilt_term)
     accel_pan_by_f_screw_tilt = (accel_pan_by_lowered_tilt * lowered_tilt_by_f_screw_tilt
         + accel_pan_by_raised_tilt * raised_tilt_by_f_screw_tilt)
     fp[2, 37] = accel_pan_by_f_screw_tilt
@@ -1293,21 +1357,19 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + accel_tilt_by_raised_tilt * raised_tilt_by_f_screw_tilt)  # accel_tilt_by_f_screw_tilt
     cos_tilt_half_length_tilt_inverse = cos_tilt * half_length_tilt_inverse
     ratio_tilt_by_linkage_cos_tilt_term = N_tilt * lead_tilt_inverse_pi_length_tilt_inverse
-    ratio_tilt_by_linkage_cos_tilt_term_2 = ratio_tilt_by_linkage_cos_tilt_term * sin_tilt
+    ratio_tilt_by_linkage_cos_tilt_term_sin_tilt = ratio_tilt_by_linkage_cos_tilt_term * sin_tilt
     ratio_tilt_by_linkage_cos_tilt = (-cos_tilt_half_length_tilt_inverse * ratio_tilt_by_length_tilt
-        + ratio_tilt_by_linkage_cos_tilt_term_2)
+        + ratio_tilt_by_linkage_cos_tilt_term_sin_tilt)
     half_length_tilt_inverse_sin_tilt = half_length_tilt_inverse * sin_tilt
-    length_tilt_by_theta_tilt_by_linkage_cos_tilt = (cos_tilt
-        * length_tilt_by_theta_tilt_by_theta_tilt_term * ratio_tilt_by_N_tilt_term
-        + half_length_tilt_inverse_sin_tilt)
-    ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term = (cos_tilt
-        * ratio_tilt_by_linkage_cos_tilt_term)
-    ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term_2 = (N_tilt * length_tilt_by_theta_tilt
-        * ratio_tilt_by_theta_tilt_term_3)
+    length_tilt_by_theta_tilt_by_linkage_cos_tilt = (cos_tilt * quarter_length_tilt_inverse_cubed
+        * ratio_tilt_by_N_tilt_term + half_length_tilt_inverse_sin_tilt)
+    cos_tilt_ratio_tilt_by_linkage_cos_tilt_term = cos_tilt * ratio_tilt_by_linkage_cos_tilt_term
+    ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term = (N_tilt
+        * lead_tilt_inverse_pi_length_tilt_inverse_sq * length_tilt_by_theta_tilt)
     ratio_tilt_by_theta_tilt_by_linkage_cos_tilt = (-cos_tilt_half_length_tilt_inverse
-        * ratio_tilt_by_theta_tilt_by_length_tilt + length_tilt_by_theta_tilt_by_linkage_cos_tilt
-        * ratio_tilt_by_length_tilt + ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term
-        - ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term_2 * sin_tilt)
+        * ratio_tilt_by_theta_tilt_by_length_tilt + cos_tilt_ratio_tilt_by_linkage_cos_tilt_term
+        + length_tilt_by_theta_tilt_by_linkage_cos_tilt * ratio_tilt_by_length_tilt
+        - ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term * sin_tilt)
     driving_torque_tilt_by_linkage_cos_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
         * ratio_tilt_by_theta_tilt_by_linkage_cos_tilt + force_tilt_by_ratio_tilt
         * ratio_tilt_by_linkage_cos_tilt)
@@ -1323,14 +1385,14 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + force_tilt_by_lost_lowering_tilt * lost_lowering_tilt_by_linkage_cos_tilt
         + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_linkage_cos_tilt)
     accel_pan_by_linkage_cos_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_linkage_cos_tilt
-    ratio_tilt_by_linkage_sin_tilt = (-half_length_tilt_inverse_sin_tilt * ratio_tilt_by_length_tilt
-        - ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term)
+    ratio_tilt_by_linkage_sin_tilt = (-cos_tilt_ratio_tilt_by_linkage_cos_tilt_term
+        - half_length_tilt_inverse_sin_tilt * ratio_tilt_by_length_tilt)
     length_tilt_by_theta_tilt_by_linkage_sin_tilt = (-cos_tilt_half_length_tilt_inverse
         + 0.25 * length_tilt_inverse_cubed * ratio_tilt_by_N_tilt_term * sin_tilt)
     ratio_tilt_by_theta_tilt_by_linkage_sin_tilt = (cos_tilt
-        * ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term_2 - half_length_tilt_inverse_sin_tilt
+        * ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term - half_length_tilt_inverse_sin_tilt
         * ratio_tilt_by_theta_tilt_by_length_tilt + length_tilt_by_theta_tilt_by_linkage_sin_tilt
-        * ratio_tilt_by_length_tilt + ratio_tilt_by_linkage_cos_tilt_term_2)
+        * ratio_tilt_by_length_tilt + ratio_tilt_by_linkage_cos_tilt_term_sin_tilt)
     driving_torque_tilt_by_linkage_sin_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
         * ratio_tilt_by_theta_tilt_by_linkage_sin_tilt + force_tilt_by_ratio_tilt
         * ratio_tilt_by_linkage_sin_tilt)
@@ -1348,10 +1410,10 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     accel_pan_by_linkage_sin_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_linkage_sin_tilt
     linkage_cos_tilt_by_l_ground_tilt = 2.0 * l_ground_tilt
     linkage_sin_tilt_inverse = 1.0 / linkage_sin_tilt
-    linkage_sin_tilt_by_l_ground_tilt_term = linkage_cos_tilt * linkage_sin_tilt_inverse
-    linkage_sin_tilt_by_l_ground_tilt = (l_ground_tilt * linkage_sin_tilt_inverse
-        * linkage_sin_tilt_term - linkage_cos_tilt_by_l_ground_tilt
-        * linkage_sin_tilt_by_l_ground_tilt_term)
+    linkage_cos_tilt_linkage_sin_tilt_inverse = linkage_cos_tilt * linkage_sin_tilt_inverse
+    linkage_sin_tilt_by_l_ground_tilt = (four_times_r_arm_tilt_sq * l_ground_tilt
+        * linkage_sin_tilt_inverse - linkage_cos_tilt_by_l_ground_tilt
+        * linkage_cos_tilt_linkage_sin_tilt_inverse)
     length_tilt_by_l_ground_tilt = l_ground_tilt * length_tilt_inverse
     ratio_tilt_by_l_ground_tilt = length_tilt_by_l_ground_tilt * ratio_tilt_by_length_tilt
     length_tilt_by_theta_tilt_by_l_ground_tilt_term = (0.5 * length_tilt_inverse_cubed
@@ -1379,23 +1441,25 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + accel_pan_by_linkage_cos_tilt * linkage_cos_tilt_by_l_ground_tilt
         + accel_pan_by_linkage_sin_tilt * linkage_sin_tilt_by_l_ground_tilt)
     fp[2, 38] = accel_pan_by_l_ground_tilt
-    accel_tilt_by_linkage_cos_tilt = accel_tilt_by_i_tilt_term * balance_tilt_by_linkage_cos_tilt
-    accel_tilt_by_linkage_sin_tilt = accel_tilt_by_i_tilt_term * balance_tilt_by_linkage_sin_tilt
+    accel_tilt_by_linkage_cos_tilt = (balance_tilt_by_linkage_cos_tilt
+        * inverse_determinant_slide_tilt_sq_mass_pan)
+    accel_tilt_by_linkage_sin_tilt = (balance_tilt_by_linkage_sin_tilt
+        * inverse_determinant_slide_tilt_sq_mass_pan)
     # accel_tilt_by_l_ground_tilt
-    fp[3, 38] = (accel_tilt_by_i_tilt_term * balance_tilt_by_l_ground_tilt
-        + accel_tilt_by_linkage_cos_tilt * linkage_cos_tilt_by_l_ground_tilt
-        + accel_tilt_by_linkage_sin_tilt * linkage_sin_tilt_by_l_ground_tilt)
-    rate_of_i_tilt_by_l_ground_tilt_term = (rate_of_i_tilt_by_theta_tilt_term
+    fp[3, 38] = (accel_tilt_by_linkage_cos_tilt * linkage_cos_tilt_by_l_ground_tilt
+        + accel_tilt_by_linkage_sin_tilt * linkage_sin_tilt_by_l_ground_tilt
+        + balance_tilt_by_l_ground_tilt * inverse_determinant_slide_tilt_sq_mass_pan)
+    rate_of_i_tilt_by_l_ground_tilt_term = (K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt
         * ratio_tilt_by_linkage_cos_tilt)
-    rate_of_i_tilt_by_l_ground_tilt_term_2 = (rate_of_i_tilt_by_theta_tilt_term
+    rate_of_i_tilt_by_l_ground_tilt_term_2 = (K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt
         * ratio_tilt_by_linkage_sin_tilt)
     # rate_of_i_tilt_by_l_ground_tilt
-    fp[7, 38] = (-linkage_cos_tilt_by_l_ground_tilt * rate_of_i_tilt_by_l_ground_tilt_term
-        - linkage_sin_tilt_by_l_ground_tilt * rate_of_i_tilt_by_l_ground_tilt_term_2
-        - rate_of_i_tilt_by_theta_tilt_term * ratio_tilt_by_l_ground_tilt)
+    fp[7, 38] = (-K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_l_ground_tilt
+        - linkage_cos_tilt_by_l_ground_tilt * rate_of_i_tilt_by_l_ground_tilt_term
+        - linkage_sin_tilt_by_l_ground_tilt * rate_of_i_tilt_by_l_ground_tilt_term_2)
     linkage_cos_tilt_by_l_min_tilt = -2.0 * l_min_tilt_plus_s_start_tilt
     linkage_sin_tilt_by_l_min_tilt = (-linkage_cos_tilt_by_l_min_tilt
-        * linkage_sin_tilt_by_l_ground_tilt_term)
+        * linkage_cos_tilt_linkage_sin_tilt_inverse)
     accel_pan_by_l_min_tilt = (accel_pan_by_linkage_cos_tilt * linkage_cos_tilt_by_l_min_tilt
         + accel_pan_by_linkage_sin_tilt * linkage_sin_tilt_by_l_min_tilt)
     fp[2, 39] = accel_pan_by_l_min_tilt
@@ -1408,7 +1472,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     fp[7, 39] = rate_of_i_tilt_by_l_min_tilt
     linkage_cos_tilt_by_r_arm_tilt = 2.0 * r_arm_tilt
     linkage_sin_tilt_by_r_arm_tilt = (4.0 * l_ground_tilt_sq * linkage_sin_tilt_inverse * r_arm_tilt
-        - linkage_cos_tilt_by_r_arm_tilt * linkage_sin_tilt_by_l_ground_tilt_term)
+        - linkage_cos_tilt_by_r_arm_tilt * linkage_cos_tilt_linkage_sin_tilt_inverse)
     length_tilt_by_r_arm_tilt = length_tilt_inverse * r_arm_tilt
     ratio_tilt_by_r_arm_tilt = length_tilt_by_r_arm_tilt * ratio_tilt_by_length_tilt
     length_tilt_by_theta_tilt_by_r_arm_tilt = (-length_tilt_by_theta_tilt_by_l_ground_tilt_term
@@ -1433,13 +1497,13 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + accel_pan_by_linkage_sin_tilt * linkage_sin_tilt_by_r_arm_tilt)
     fp[2, 40] = accel_pan_by_r_arm_tilt
     # accel_tilt_by_r_arm_tilt
-    fp[3, 40] = (accel_tilt_by_i_tilt_term * balance_tilt_by_r_arm_tilt
-        + accel_tilt_by_linkage_cos_tilt * linkage_cos_tilt_by_r_arm_tilt
-        + accel_tilt_by_linkage_sin_tilt * linkage_sin_tilt_by_r_arm_tilt)
+    fp[3, 40] = (accel_tilt_by_linkage_cos_tilt * linkage_cos_tilt_by_r_arm_tilt
+        + accel_tilt_by_linkage_sin_tilt * linkage_sin_tilt_by_r_arm_tilt
+        + balance_tilt_by_r_arm_tilt * inverse_determinant_slide_tilt_sq_mass_pan)
     # rate_of_i_tilt_by_r_arm_tilt
-    fp[7, 40] = (-linkage_cos_tilt_by_r_arm_tilt * rate_of_i_tilt_by_l_ground_tilt_term
-        - linkage_sin_tilt_by_r_arm_tilt * rate_of_i_tilt_by_l_ground_tilt_term_2
-        - rate_of_i_tilt_by_theta_tilt_term * ratio_tilt_by_r_arm_tilt)
+    fp[7, 40] = (-K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_r_arm_tilt
+        - linkage_cos_tilt_by_r_arm_tilt * rate_of_i_tilt_by_l_ground_tilt_term
+        - linkage_sin_tilt_by_r_arm_tilt * rate_of_i_tilt_by_l_ground_tilt_term_2)
     fp[2, 41] = accel_pan_by_l_min_tilt  # accel_pan_by_s_start_tilt
     fp[3, 41] = accel_tilt_by_l_min_tilt  # accel_tilt_by_s_start_tilt
     fp[7, 41] = rate_of_i_tilt_by_l_min_tilt  # rate_of_i_tilt_by_s_start_tilt
@@ -1487,8 +1551,8 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     gx[5, 2] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_omega_pan
     gx[8, 2] = -d_shaft_pan  # upper_pan_by_omega_pan
     gx[9, 2] = -d_shaft_pan  # lower_pan_by_omega_pan
-    # holding_tilt_by_omega_tilt
-    gx[3, 3] = -accel_pan_by_omega_tilt * mass_pan_tilt - accel_pan_by_omega_tilt_term
+    gx[3, 3] = (-accel_pan_by_omega_tilt * mass_pan_tilt
+        - b_tilt_plus_carried_tilt_by_omega_tilt_term)  # holding_tilt_by_omega_tilt
     # forward_tilt_by_omega_tilt
     gx[4, 3] = forward_tilt_by_theta_pan_term_2 * load_torque_tilt_by_omega_tilt
     # backward_tilt_by_omega_tilt
@@ -1922,4 +1986,4 @@ EFFECTS = (
      "linear actuator with lead screw and linkage",
      "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6", "", False),
 )
-# END sha256 90ee20cd3df9c93f336bb7daf86e1cce3ac73b79af01ec9d33137980199f1aa4
+# END sha256 1b26dd8b272f8b8a96d1d6648500e1cbc7f273bbd89e385a80a56c0bdbc4c1c1

@@ -28,7 +28,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "f5050564febb537a"
+MODEL_HASH = "01e0ea5b0bb9b398"
 NAME = "ideal"
 TITLE = "Balanced pan-tilt platform of the thesis"
 # How many numbers `prepare` writes.
@@ -183,6 +183,35 @@ def equation_error(t, x, u, p, m, r):
     J_y_tilt = p[2]
     r[0] = -force_pan + given_accel_pan * mass_pan  # torque_pan
     r[1] = J_y_tilt * given_accel_tilt - force_tilt  # torque_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def mass_matrix(t, x, u, p, m, M):
+    """Write the mass matrix of the joints, then of gear outputs, into M.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
+      MODE_NAMES; M [2, 2] in kg m^2.
+    """
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    mass_pan = forces[1]
+    J_y_tilt = p[2]
+    M[0, 0] = mass_pan
+    M[0, 1] = 0.0  # mass_pan_tilt
+    M[1, 0] = 0.0  # mass_pan_tilt
+    M[1, 1] = J_y_tilt  # mass_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def gravity_torque(t, x, u, p, m, G):
+    """Write the torques that hold the machine against its weight into G.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
+      MODE_NAMES; G [2] in N m.
+    G: gravity_torque_pan, gravity_torque_tilt.
+    """
+    G[0] = 0.0  # gravity_torque_pan
+    G[1] = 0.0  # gravity_torque_tilt
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -416,4 +445,4 @@ EFFECTS = (
      "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
      "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
 )
-# END sha256 90177655ba109a563385eb06625b45536a7d6fe152f72962c7969cf8a7fc250a
+# END sha256 7560a36feb3f68f962016263db8d64da08a7b0a0aa71b7e286f6bbb60148ba2c

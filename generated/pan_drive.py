@@ -32,7 +32,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "a5c3efd44a400bab"
+MODEL_HASH = "847975f86cd5685a"
 NAME = "pan_drive"
 TITLE = "Pan drive of the thesis"
 # How many numbers `prepare` writes.
@@ -110,11 +110,12 @@ def mass_and_forces(t, x, u, p, m, c):
     slide_pan, side_pan, active_pan = m[0], m[1], m[2]
     half_gap_pan, K_t_pan_N_pan = c[0], c[4]
     omega_gear_pan_minus_omega_pan = omega_gear_pan - omega_pan
-    shaft_torque_pan_term = d_shaft_pan * omega_gear_pan_minus_omega_pan
+    d_shaft_pan_omega_gear_pan_minus_omega_pan = d_shaft_pan * omega_gear_pan_minus_omega_pan
     theta_pan_minus_theta_gear_pan = -theta_gear_pan + theta_pan
-    shaft_torque_pan_term_2 = -half_gap_pan * side_pan - theta_pan_minus_theta_gear_pan
-    k_shaft_pan_shaft_torque_pan_term_2 = k_shaft_pan * shaft_torque_pan_term_2
-    shaft_torque_pan = active_pan * (k_shaft_pan_shaft_torque_pan_term_2 + shaft_torque_pan_term)
+    shaft_torque_pan_term = -half_gap_pan * side_pan - theta_pan_minus_theta_gear_pan
+    k_shaft_pan_shaft_torque_pan_term = k_shaft_pan * shaft_torque_pan_term
+    shaft_torque_pan = (active_pan * (d_shaft_pan_omega_gear_pan_minus_omega_pan
+        + k_shaft_pan_shaft_torque_pan_term))
     force_pan = -b_pan * omega_pan + shaft_torque_pan
     coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
     omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
@@ -126,9 +127,10 @@ def mass_and_forces(t, x, u, p, m, c):
         + 1.0) - coulomb_torque_pan) * math.exp(-stribeck_square_pan)))
     force_gear_pan = K_t_pan * N_pan * i_pan - force_gear_pan_term - shaft_torque_pan
     rate_of_i_pan = (-K_t_pan_N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
-    return (omega_gear_pan_minus_omega_pan, shaft_torque_pan_term, theta_pan_minus_theta_gear_pan,
-        shaft_torque_pan_term_2, k_shaft_pan_shaft_torque_pan_term_2, shaft_torque_pan, force_pan,
-        omega_gear_pan_sq, force_gear_pan_term, force_gear_pan, rate_of_i_pan)
+    return (omega_gear_pan_minus_omega_pan, d_shaft_pan_omega_gear_pan_minus_omega_pan,
+        theta_pan_minus_theta_gear_pan, shaft_torque_pan_term, k_shaft_pan_shaft_torque_pan_term,
+        shaft_torque_pan, force_pan, omega_gear_pan_sq, force_gear_pan_term, force_gear_pan,
+        rate_of_i_pan)
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -184,8 +186,8 @@ def guards(t, x, u, p, m, g):
     """
     c = constants(p)
     forces = mass_and_forces(t, x, u, p, m, c)
-    shaft_torque_pan_term, theta_pan_minus_theta_gear_pan = forces[1], forces[2]
-    shaft_torque_pan = forces[5]
+    d_shaft_pan_omega_gear_pan_minus_omega_pan = forces[1]
+    theta_pan_minus_theta_gear_pan, shaft_torque_pan = forces[2], forces[5]
     i_pan = x[4]
     F_s_pan, a_F_s_pan, k_shaft_pan = p[3], p[7], p[11]
     half_gap_pan, K_t_pan_N_pan = c[0], c[4]
@@ -194,10 +196,10 @@ def guards(t, x, u, p, m, g):
     g[2] = F_s_pan * (1.0 - a_F_s_pan)  # backward_pan
     g[3] = -theta_pan_minus_theta_gear_pan  # separation_pan
     g[4] = half_gap_pan
-    # upper_pan
-    g[5] = k_shaft_pan * (-half_gap_pan - theta_pan_minus_theta_gear_pan) + shaft_torque_pan_term
-    # lower_pan
-    g[6] = k_shaft_pan * (half_gap_pan - theta_pan_minus_theta_gear_pan) + shaft_torque_pan_term
+    g[5] = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (-half_gap_pan
+        - theta_pan_minus_theta_gear_pan))  # upper_pan
+    g[6] = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (half_gap_pan
+        - theta_pan_minus_theta_gear_pan))  # lower_pan
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -210,9 +212,10 @@ def energy(t, x, u, p, m, e):
     """
     c = constants(p)
     forces = mass_and_forces(t, x, u, p, m, c)
-    omega_gear_pan_minus_omega_pan, shaft_torque_pan_term = forces[0], forces[1]
-    shaft_torque_pan_term_2, k_shaft_pan_shaft_torque_pan_term_2 = forces[3], forces[4]
-    omega_gear_pan_sq, force_gear_pan_term = forces[7], forces[8]
+    omega_gear_pan_minus_omega_pan = forces[0]
+    d_shaft_pan_omega_gear_pan_minus_omega_pan, shaft_torque_pan_term = forces[1], forces[3]
+    k_shaft_pan_shaft_torque_pan_term, omega_gear_pan_sq = forces[4], forces[7]
+    force_gear_pan_term = forces[8]
     omega_pan, omega_gear_pan, i_pan = x[1], x[3], x[4]
     u_pan = u[0]
     J_pan, b_pan, k_shaft_pan, L_pan, R_pan = p[0], p[1], p[11], p[13], p[14]
@@ -222,15 +225,14 @@ def energy(t, x, u, p, m, e):
     i_pan_sq = i_pan * i_pan
     omega_pan_sq = omega_pan * omega_pan
     e[0] = (0.5 * J_pan * omega_pan_sq + 0.5 * L_pan * i_pan_sq
-        + 0.5 * k_shaft_pan * (shaft_torque_pan_term_2 * shaft_torque_pan_term_2) * side_pan_sq
+        + 0.5 * k_shaft_pan * (shaft_torque_pan_term * shaft_torque_pan_term) * side_pan_sq
         + 0.5 * mass_gear_pan * omega_gear_pan_sq)  # stored
     e[1] = i_pan * u_pan  # power_in
     twist_rate_pan = omega_gear_pan_minus_omega_pan * side_pan_sq
     winding_loss_pan = R_pan * i_pan_sq
-    # dissipated
     e[2] = (b_pan * omega_pan_sq + force_gear_pan_term * omega_gear_pan
-        + twist_rate_pan * (active_pan * shaft_torque_pan_term
-        - k_shaft_pan_shaft_torque_pan_term_2 * (1.0 - active_pan)) + winding_loss_pan)
+        + twist_rate_pan * (active_pan * d_shaft_pan_omega_gear_pan_minus_omega_pan
+        - k_shaft_pan_shaft_torque_pan_term * (1.0 - active_pan)) + winding_loss_pan)  # dissipated
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -251,6 +253,34 @@ def equation_error(t, x, u, p, m, r):
     r[0] = J_pan * given_accel_pan - force_pan  # torque_pan
     r[1] = -force_gear_pan + given_accel_gear_pan * mass_gear_pan  # torque_gear_pan
     r[2] = rate_of_i_pan
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def mass_matrix(t, x, u, p, m, M):
+    """Write the mass matrix of the joints, then of gear outputs, into M.
+
+    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
+      see MODE_NAMES; M [2, 2] in kg m^2.
+    """
+    c = constants(p)
+    J_pan = p[0]
+    mass_gear_pan = c[2]
+    M[0, 0] = J_pan  # mass_pan
+    M[0, 1] = 0.0  # mass_pan_gear_pan
+    M[1, 0] = 0.0  # mass_pan_gear_pan
+    M[1, 1] = mass_gear_pan
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def gravity_torque(t, x, u, p, m, G):
+    """Write the torques that hold the machine against its weight into G.
+
+    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
+      see MODE_NAMES; G [2] in N m.
+    G: gravity_torque_pan, gravity_torque_gear_pan.
+    """
+    G[0] = 0.0  # gravity_torque_pan
+    G[1] = 0.0  # gravity_torque_gear_pan
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -307,11 +337,11 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     exp_minus_stribeck_square_pan = math.exp(-stribeck_square_pan)
     accel_gear_pan_by_omega_gear_pan_term = (exp_minus_stribeck_square_pan * (F_s_pan
         * one_plus_a_F_s_pan_slide_pan - coulomb_torque_pan))
-    accel_gear_pan_by_omega_gear_pan_term_2 = 2.0 * accel_gear_pan_by_omega_gear_pan_term
+    twice_accel_gear_pan_by_omega_gear_pan_term = 2.0 * accel_gear_pan_by_omega_gear_pan_term
     one_plus_a_F_v_pan_slide_pan = a_F_v_pan * slide_pan + 1.0
     viscous_coefficient_pan = F_v_pan * one_plus_a_F_v_pan_slide_pan
     fx[3, 3] = (inverse_mass_gear_pan_slide_pan_sq * (-balance_gear_pan_by_omega_pan - slide_pan
-        * (-accel_gear_pan_by_omega_gear_pan_term_2 * omega_gear_pan * stribeck_square_pan_term
+        * (-omega_gear_pan * stribeck_square_pan_term * twice_accel_gear_pan_by_omega_gear_pan_term
         + slide_pan * viscous_coefficient_pan)))  # accel_gear_pan_by_omega_gear_pan
     rate_of_i_pan_by_u_pan = 1.0 / L_pan
     balance_gear_pan_by_i_pan = K_t_pan * N_pan
@@ -337,7 +367,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * one_plus_a_F_c_pan_slide_pan + one_plus_a_F_c_pan_slide_pan))  # accel_gear_pan_by_F_c_pan
     fp[3, 3] = (-exp_minus_stribeck_square_pan * inverse_mass_gear_pan_slide_pan_sq
         * one_plus_a_F_s_pan_slide_pan * slide_pan)  # accel_gear_pan_by_F_s_pan
-    accel_gear_pan_by_v_s_pan_term = accel_gear_pan_by_omega_gear_pan_term_2 * omega_gear_pan_sq
+    accel_gear_pan_by_v_s_pan_term = omega_gear_pan_sq * twice_accel_gear_pan_by_omega_gear_pan_term
     # accel_gear_pan_by_v_s_pan
     fp[3, 4] = (-accel_gear_pan_by_v_s_pan_term * inverse_mass_gear_pan_slide_pan_sq
         * one_plus_a_v_s_pan_slide_pan_inverse_sq * slide_pan / (v_s_pan * v_s_pan * v_s_pan))
@@ -558,4 +588,4 @@ EFFECTS = (
     ("dc_motor", "pan", ("L_pan", "R_pan", "K_t_pan", "J_motor_pan", "N_pan"), (), (),
      "geared DC motor", "thesis Eq. 3.10, Eq. 3.11 with erratum 8", "", False),
 )
-# END sha256 a3c20114bce1de6d61bd6f0f064a88f9a57489fabb8b8a2b1838239651801a7a
+# END sha256 8b25a37295a279918bafef55dcdbbb975afbb430f4fcfbf4bbeeeabf33ef3a50

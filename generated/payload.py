@@ -43,7 +43,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "d41a8b69f7d722e7"
+MODEL_HASH = "49d58dccc2db34c2"
 NAME = "payload"
 TITLE = "Pan-tilt platform of the thesis with its payload"
 # How many numbers `prepare` writes.
@@ -129,11 +129,13 @@ def mass_and_forces(t, x, u, p, m, c):
     coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
     force_pan = (-b_pan * omega_pan - omega_tilt * (coriolis
         + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt)) + tau_pan)
-    force_tilt = (-b_tilt * omega_tilt + 0.5 * coriolis * omega_pan + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt + tau_tilt)
+    minus_gravity_torque_tilt = cos_tilt * gravity_cos_tilt + gravity_sin_tilt * sin_tilt
+    force_tilt = (-b_tilt * omega_tilt + 0.5 * coriolis * omega_pan + minus_gravity_torque_tilt
+        + tau_tilt)
     mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
     mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
-    return (cos_tilt, sin_tilt, force_pan, force_tilt, mass_pan, mass_pan_tilt)
+    return (cos_tilt, sin_tilt, force_pan, minus_gravity_torque_tilt, force_tilt, mass_pan,
+        mass_pan_tilt)
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -158,7 +160,7 @@ def prepared_derivative(t, x, u, p, m, c, dx):
     dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt.
     """
     forces = mass_and_forces(t, x, u, p, m, c)
-    force_pan, force_tilt, mass_pan, mass_pan_tilt = forces[2], forces[3], forces[4], forces[5]
+    force_pan, force_tilt, mass_pan, mass_pan_tilt = forces[2], forces[4], forces[5], forces[6]
     omega_pan, omega_tilt = x[2], x[3]
     inertia_tilt = c[6]
     dx[0] = omega_pan  # rate_of_theta_pan
@@ -200,7 +202,7 @@ def energy(t, x, u, p, m, e):
     """
     c = constants(p)
     forces = mass_and_forces(t, x, u, p, m, c)
-    cos_tilt, sin_tilt, mass_pan, mass_pan_tilt = forces[0], forces[1], forces[4], forces[5]
+    cos_tilt, sin_tilt, mass_pan, mass_pan_tilt = forces[0], forces[1], forces[5], forces[6]
     omega_pan, omega_tilt = x[2], x[3]
     tau_pan, tau_tilt = u[0], u[1]
     b_pan, b_tilt = p[11], p[12]
@@ -225,12 +227,44 @@ def equation_error(t, x, u, p, m, r):
     """
     c = constants(p)
     forces = mass_and_forces(t, x, u, p, m, c)
-    force_pan, force_tilt, mass_pan, mass_pan_tilt = forces[2], forces[3], forces[4], forces[5]
+    force_pan, force_tilt, mass_pan, mass_pan_tilt = forces[2], forces[4], forces[5], forces[6]
     given_accel_pan, given_accel_tilt = x[4], x[5]
     inertia_tilt = c[6]
     r[0] = -force_pan + given_accel_pan * mass_pan + given_accel_tilt * mass_pan_tilt  # torque_pan
     # torque_tilt
     r[1] = -force_tilt + given_accel_pan * mass_pan_tilt + given_accel_tilt * inertia_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def mass_matrix(t, x, u, p, m, M):
+    """Write the mass matrix of the joints, then of gear outputs, into M.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
+      see MODE_NAMES; M [2, 2] in kg m^2.
+    """
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    mass_pan, mass_pan_tilt = forces[5], forces[6]
+    inertia_tilt = c[6]
+    M[0, 0] = mass_pan
+    M[0, 1] = mass_pan_tilt
+    M[1, 0] = mass_pan_tilt
+    M[1, 1] = inertia_tilt  # mass_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def gravity_torque(t, x, u, p, m, G):
+    """Write the torques that hold the machine against its weight into G.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
+      see MODE_NAMES; G [2] in N m.
+    G: gravity_torque_pan, gravity_torque_tilt.
+    """
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    minus_gravity_torque_tilt = forces[3]
+    G[0] = 0.0  # gravity_torque_pan
+    G[1] = -minus_gravity_torque_tilt  # gravity_torque_tilt
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -594,8 +628,9 @@ def lane_derivative(w):
             - inertia_pan_sin_cos_tilt))
         force_pan = (-b_pan * omega_pan - omega_tilt * (coriolis
             + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt)) + tau_pan)
-        force_tilt = (-b_tilt * omega_tilt + 0.5 * coriolis * omega_pan
-            + cos_tilt * gravity_cos_tilt + gravity_sin_tilt * sin_tilt + tau_tilt)
+        minus_gravity_torque_tilt = cos_tilt * gravity_cos_tilt + gravity_sin_tilt * sin_tilt
+        force_tilt = (-b_tilt * omega_tilt + 0.5 * coriolis * omega_pan + minus_gravity_torque_tilt
+            + tau_tilt)
         mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
         mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
         w[1856 + lane] = omega_pan
@@ -629,4 +664,4 @@ EFFECTS = (
      "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
      "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
 )
-# END sha256 c3662c27237c89a58cce1a57cb078970affb6dd2781c7311331faed88e3f82a6
+# END sha256 45856c2fa8e02f53d8d10d1458ebac3473d1371d88ffe279545e0824741ae6d4

@@ -46,7 +46,7 @@ with the functions named above, in order of use:
       lost_raising_tilt)*Abs(carried_tilt*slide_tilt)/2
   i_tilt' = (-K_t_tilt*omega_tilt*ratio_tilt - R_tilt*i_tilt + u_tilt)/L_tilt
 
-Operations of the state derivative: 193 as derived, 117 as written, 82 of them at every
+Operations of the state derivative: 193 as derived, 115 as written, 80 of them at every
 call where `prepare` does the others once per parameter set.
 
 Effects:
@@ -60,7 +60,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "fee3db7e838d1994"
+MODEL_HASH = "d4e9de38169b9507"
 NAME = "tilt_drive"
 TITLE = "Tilt drive of the thesis"
 # How many numbers `prepare` writes.
@@ -122,9 +122,6 @@ def constants(p):
     m_payload, J_y_payload, c_x_payload, c_z_payload, lead_tilt = p[0], p[1], p[2], p[3], p[11]
     d_screw_tilt, f_screw_tilt, l_ground_tilt, l_min_tilt = p[12], p[13], p[14], p[15]
     r_arm_tilt, s_start_tilt, gravity = p[16], p[17], p[19]
-    gravity_m_payload = gravity * m_payload
-    gravity_cos_tilt = c_x_payload * gravity_m_payload
-    gravity_sin_tilt = c_z_payload * gravity_m_payload
     l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
     r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
     l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
@@ -133,6 +130,9 @@ def constants(p):
     linkage_sin_tilt = (math.sqrt(4.0 * l_ground_tilt_sq * r_arm_tilt_sq
         - (linkage_cos_tilt * linkage_cos_tilt)))
     lead_tilt_inverse = 1.0 / lead_tilt
+    gravity_m_payload = gravity * m_payload
+    gravity_cos_tilt = c_x_payload * gravity_m_payload
+    gravity_sin_tilt = c_z_payload * gravity_m_payload
     inertia_tilt = (J_y_payload + (c_x_payload * c_x_payload) * m_payload
         + (c_z_payload * c_z_payload) * m_payload)
     d_screw_tilt_pi = math.pi * d_screw_tilt
@@ -144,8 +144,8 @@ def constants(p):
     raised_tilt = (d_screw_tilt_pi_lead_tilt_inverse * (d_screw_tilt_pi_f_screw_tilt
         + lead_tilt) / (d_screw_tilt_pi - f_screw_tilt_lead_tilt))
     raised_tilt_minus_lowered_tilt = -lowered_tilt + raised_tilt
-    return (gravity_cos_tilt, gravity_sin_tilt, l_ground_tilt_sq_plus_r_arm_tilt_sq,
-        linkage_cos_tilt, linkage_sin_tilt, lead_tilt_inverse, inertia_tilt, lowered_tilt,
+    return (l_ground_tilt_sq_plus_r_arm_tilt_sq, linkage_cos_tilt, linkage_sin_tilt,
+        lead_tilt_inverse, gravity_cos_tilt, gravity_sin_tilt, inertia_tilt, lowered_tilt,
         raised_tilt, raised_tilt_minus_lowered_tilt)
 
 
@@ -157,8 +157,8 @@ def mass_and_forces(t, x, u, p, m, c):
     b_tilt, L_tilt, R_tilt, K_t_tilt, J_motor_tilt = p[4], p[5], p[6], p[7], p[8]
     b_motor_tilt, N_tilt = p[9], p[10]
     slide_tilt = m[0]
-    gravity_cos_tilt, gravity_sin_tilt, l_ground_tilt_sq_plus_r_arm_tilt_sq = c[0], c[1], c[2]
-    linkage_cos_tilt, linkage_sin_tilt, lead_tilt_inverse, inertia_tilt = c[3], c[4], c[5], c[6]
+    l_ground_tilt_sq_plus_r_arm_tilt_sq, linkage_cos_tilt, linkage_sin_tilt = c[0], c[1], c[2]
+    lead_tilt_inverse, gravity_cos_tilt, gravity_sin_tilt, inertia_tilt = c[3], c[4], c[5], c[6]
     lowered_tilt, raised_tilt = c[7], c[8]
     cos_tilt = math.cos(theta_tilt)
     cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
@@ -166,39 +166,43 @@ def mass_and_forces(t, x, u, p, m, c):
     linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
     length_tilt = (math.sqrt(-cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq
         - linkage_sin_tilt_sin_tilt))
-    ratio_tilt_term = math.pi * N_tilt * lead_tilt_inverse / length_tilt
-    ratio_tilt_term_2 = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
-    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
-    length_tilt_by_theta_tilt = 0.5 * ratio_tilt_term_2 / length_tilt
+    N_tilt_lead_tilt_inverse_pi_per_length_tilt = math.pi * N_tilt * lead_tilt_inverse / length_tilt
+    ratio_tilt_term = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
+    ratio_tilt = N_tilt_lead_tilt_inverse_pi_per_length_tilt * ratio_tilt_term
+    length_tilt_by_theta_tilt = 0.5 * ratio_tilt_term / length_tilt
     ratio_tilt_by_theta_tilt = (-math.pi * N_tilt * lead_tilt_inverse * length_tilt_by_theta_tilt
-        * ratio_tilt_term_2 / (length_tilt * length_tilt) + ratio_tilt_term
-        * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt))
+        * ratio_tilt_term / (length_tilt * length_tilt)
+        + N_tilt_lead_tilt_inverse_pi_per_length_tilt * (cos_tilt_linkage_cos_tilt
+        + linkage_sin_tilt_sin_tilt))
     omega_tilt_sq = omega_tilt * omega_tilt
     carried_tilt_term = J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
     omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
     carried_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
     carried_tilt_term_3 = carried_tilt_term - carried_tilt_term_2 * ratio_tilt
     b_tilt_omega_tilt = b_tilt * omega_tilt
+    cos_tilt_gravity_cos_tilt = cos_tilt * gravity_cos_tilt
+    gravity_sin_tilt_sin_tilt = gravity_sin_tilt * sin_tilt
     ratio_tilt_sq = ratio_tilt * ratio_tilt
     J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
     lost_lowering_tilt = ((1.0 - lowered_tilt) / abs(J_motor_tilt_ratio_tilt_sq
         + inertia_tilt * lowered_tilt))
     lost_raising_tilt = ((raised_tilt - 1.0) / (J_motor_tilt_ratio_tilt_sq
         + inertia_tilt * raised_tilt))
-    load_torque_tilt = (-b_tilt_omega_tilt + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt)
+    minus_gravity_torque_tilt = cos_tilt_gravity_cos_tilt + gravity_sin_tilt_sin_tilt
+    load_torque_tilt = -b_tilt_omega_tilt + minus_gravity_torque_tilt
     carried_tilt = (-J_motor_tilt_ratio_tilt_sq * load_torque_tilt
         - carried_tilt_term_3 * inertia_tilt)
     carried_tilt_slide_tilt = carried_tilt * slide_tilt
     force_tilt_term = (slide_tilt * (0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt
         + lost_raising_tilt) + 0.5 * (lost_lowering_tilt
         + lost_raising_tilt) * abs(carried_tilt_slide_tilt)))
-    force_tilt = (-b_tilt_omega_tilt - carried_tilt_term_3 + cos_tilt * gravity_cos_tilt
-        - force_tilt_term + gravity_sin_tilt * sin_tilt)
+    force_tilt = (-b_tilt_omega_tilt - carried_tilt_term_3 + cos_tilt_gravity_cos_tilt
+        - force_tilt_term + gravity_sin_tilt_sin_tilt)
     mass_tilt = J_motor_tilt_ratio_tilt_sq + inertia_tilt
     rate_of_i_tilt = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
     return (cos_tilt, sin_tilt, ratio_tilt, omega_tilt_sq, carried_tilt_term, carried_tilt_term_2,
-        ratio_tilt_sq, load_torque_tilt, force_tilt_term, force_tilt, mass_tilt, rate_of_i_tilt)
+        ratio_tilt_sq, minus_gravity_torque_tilt, load_torque_tilt, force_tilt_term, force_tilt,
+        mass_tilt, rate_of_i_tilt)
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -206,8 +210,8 @@ def prepare(p, c):
     """Write into c what prepared_derivative takes from the parameters alone.
 
     p [20] in the units of PARAMETERS; c [10] of prepare.
-    c: gravity_cos_tilt, gravity_sin_tilt, l_ground_tilt_sq_plus_r_arm_tilt_sq, linkage_cos_tilt,
-      linkage_sin_tilt, lead_tilt_inverse, inertia_tilt, lowered_tilt, raised_tilt,
+    c: l_ground_tilt_sq_plus_r_arm_tilt_sq, linkage_cos_tilt, linkage_sin_tilt, lead_tilt_inverse,
+      gravity_cos_tilt, gravity_sin_tilt, inertia_tilt, lowered_tilt, raised_tilt,
       raised_tilt_minus_lowered_tilt.
     """
     values = constants(p)
@@ -224,7 +228,7 @@ def prepared_derivative(t, x, u, p, m, c, dx):
     dx: rate_of_theta_tilt, accel_tilt, rate_of_i_tilt.
     """
     forces = mass_and_forces(t, x, u, p, m, c)
-    force_tilt, mass_tilt, rate_of_i_tilt = forces[9], forces[10], forces[11]
+    force_tilt, mass_tilt, rate_of_i_tilt = forces[10], forces[11], forces[12]
     omega_tilt = x[1]
     slide_tilt = m[0]
     dx[0] = omega_tilt  # rate_of_theta_tilt
@@ -255,7 +259,7 @@ def guards(t, x, u, p, m, g):
     c = constants(p)
     forces = mass_and_forces(t, x, u, p, m, c)
     ratio_tilt, carried_tilt_term, carried_tilt_term_2 = forces[2], forces[4], forces[5]
-    load_torque_tilt = forces[7]
+    load_torque_tilt = forces[8]
     lowered_tilt, raised_tilt, raised_tilt_minus_lowered_tilt = c[7], c[8], c[9]
     transmitted_torque_tilt = carried_tilt_term_2 * ratio_tilt
     g[0] = -carried_tilt_term + load_torque_tilt + transmitted_torque_tilt  # holding_tilt
@@ -278,11 +282,11 @@ def energy(t, x, u, p, m, e):
     c = constants(p)
     forces = mass_and_forces(t, x, u, p, m, c)
     cos_tilt, sin_tilt, omega_tilt_sq, ratio_tilt_sq = forces[0], forces[1], forces[3], forces[6]
-    force_tilt_term, mass_tilt = forces[8], forces[10]
+    force_tilt_term, mass_tilt = forces[9], forces[11]
     omega_tilt, i_tilt = x[1], x[2]
     u_tilt = u[0]
     b_tilt, L_tilt, R_tilt, b_motor_tilt = p[4], p[5], p[6], p[9]
-    gravity_cos_tilt, gravity_sin_tilt = c[0], c[1]
+    gravity_cos_tilt, gravity_sin_tilt = c[4], c[5]
     i_tilt_sq = i_tilt * i_tilt
     e[0] = (0.5 * L_tilt * i_tilt_sq + cos_tilt * gravity_sin_tilt - gravity_cos_tilt * sin_tilt
         + 0.5 * mass_tilt * omega_tilt_sq)  # stored
@@ -303,10 +307,37 @@ def equation_error(t, x, u, p, m, r):
     """
     c = constants(p)
     forces = mass_and_forces(t, x, u, p, m, c)
-    force_tilt, mass_tilt, rate_of_i_tilt = forces[9], forces[10], forces[11]
+    force_tilt, mass_tilt, rate_of_i_tilt = forces[10], forces[11], forces[12]
     given_accel_tilt = x[3]
     r[0] = -force_tilt + given_accel_tilt * mass_tilt  # torque_tilt
     r[1] = rate_of_i_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def mass_matrix(t, x, u, p, m, M):
+    """Write the mass matrix of the joints, then of gear outputs, into M.
+
+    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
+      see MODE_NAMES; M [1, 1] in kg m^2.
+    """
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    mass_tilt = forces[11]
+    M[0, 0] = mass_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def gravity_torque(t, x, u, p, m, G):
+    """Write the torques that hold the machine against its weight into G.
+
+    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
+      see MODE_NAMES; G [1] in N m.
+    G: gravity_torque_tilt.
+    """
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, m, c)
+    minus_gravity_torque_tilt = forces[7]
+    G[0] = -minus_gravity_torque_tilt  # gravity_torque_tilt
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -340,8 +371,8 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     linkage_cos_tilt = (l_ground_tilt_sq_plus_r_arm_tilt_sq
         - (l_min_tilt_plus_s_start_tilt * l_min_tilt_plus_s_start_tilt))
     cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
-    linkage_sin_tilt_term = 4.0 * r_arm_tilt_sq
-    linkage_sin_tilt = (math.sqrt(l_ground_tilt_sq * linkage_sin_tilt_term
+    four_times_r_arm_tilt_sq = 4.0 * r_arm_tilt_sq
+    linkage_sin_tilt = (math.sqrt(four_times_r_arm_tilt_sq * l_ground_tilt_sq
         - (linkage_cos_tilt * linkage_cos_tilt)))
     sin_tilt = math.sin(theta_tilt)
     linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
@@ -365,20 +396,21 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     half_length_tilt_inverse = 0.5 * length_tilt_inverse
     length_tilt_by_theta_tilt = half_length_tilt_inverse * ratio_tilt_by_N_tilt_term
     length_tilt_inverse_sq = 1.0 / (length_tilt * length_tilt)
-    ratio_tilt_by_theta_tilt_term_3 = lead_tilt_inverse_pi * length_tilt_inverse_sq
-    ratio_tilt_by_theta_tilt_term_4 = ratio_tilt_by_N_tilt_term * ratio_tilt_by_theta_tilt_term_3
-    ratio_tilt_by_theta_tilt_term_5 = length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_term_4
+    lead_tilt_inverse_pi_length_tilt_inverse_sq = lead_tilt_inverse_pi * length_tilt_inverse_sq
+    ratio_tilt_by_theta_tilt_term_3 = (lead_tilt_inverse_pi_length_tilt_inverse_sq
+        * ratio_tilt_by_N_tilt_term)
+    ratio_tilt_by_theta_tilt_term_4 = length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_term_3
     ratio_tilt_by_theta_tilt = (N_tilt * ratio_tilt_by_theta_tilt_term_2
-        - N_tilt * ratio_tilt_by_theta_tilt_term_5)
+        - N_tilt * ratio_tilt_by_theta_tilt_term_4)
     length_tilt_inverse_cubed = 1.0 / (length_tilt * length_tilt * length_tilt)
-    length_tilt_by_theta_tilt_by_theta_tilt_term = 0.25 * length_tilt_inverse_cubed
+    quarter_length_tilt_inverse_cubed = 0.25 * length_tilt_inverse_cubed
     length_tilt_by_theta_tilt_by_theta_tilt = (half_length_tilt_inverse
-        * ratio_tilt_by_theta_tilt_term - length_tilt_by_theta_tilt_by_theta_tilt_term
+        * ratio_tilt_by_theta_tilt_term - quarter_length_tilt_inverse_cubed
         * (ratio_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt_term))
     N_tilt_ratio_tilt_by_theta_tilt_term = N_tilt * ratio_tilt_by_theta_tilt_term
     ratio_tilt_by_theta_tilt_by_theta_tilt_term = (N_tilt_ratio_tilt_by_theta_tilt_term
-        * ratio_tilt_by_theta_tilt_term_3)
-    ratio_tilt_by_length_tilt = -N_tilt * ratio_tilt_by_theta_tilt_term_4
+        * lead_tilt_inverse_pi_length_tilt_inverse_sq)
+    ratio_tilt_by_length_tilt = -N_tilt * ratio_tilt_by_theta_tilt_term_3
     ratio_tilt_by_theta_tilt_by_length_tilt = (2.0 * math.pi * N_tilt * lead_tilt_inverse
         * length_tilt_by_theta_tilt * length_tilt_inverse_cubed * ratio_tilt_by_N_tilt_term
         - ratio_tilt_by_theta_tilt_by_theta_tilt_term)
@@ -412,13 +444,13 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + driving_torque_tilt_by_theta_tilt * inertia_tilt)
     d_screw_tilt_pi = math.pi * d_screw_tilt
     f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
-    lowered_tilt_term = d_screw_tilt_pi + f_screw_tilt_lead_tilt
-    lowered_tilt_term_inverse = 1.0 / lowered_tilt_term
+    d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt = d_screw_tilt_pi + f_screw_tilt_lead_tilt
+    lowered_tilt_term = 1.0 / d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt
     d_screw_tilt_pi_f_screw_tilt = d_screw_tilt_pi * f_screw_tilt
-    lowered_tilt_term_2 = d_screw_tilt_pi_f_screw_tilt - lead_tilt
-    lowered_tilt_term_3 = lowered_tilt_term_2 * lowered_tilt_term_inverse
+    d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt = d_screw_tilt_pi_f_screw_tilt - lead_tilt
+    lowered_tilt_term_2 = d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt * lowered_tilt_term
     d_screw_tilt_pi_lead_tilt_inverse = d_screw_tilt_pi * lead_tilt_inverse
-    lowered_tilt = -d_screw_tilt_pi_lead_tilt_inverse * lowered_tilt_term_3
+    lowered_tilt = -d_screw_tilt_pi_lead_tilt_inverse * lowered_tilt_term_2
     one_minus_lowered_tilt = 1.0 - lowered_tilt
     lost_lowering_tilt_by_theta_tilt_term = J_motor_tilt_ratio_tilt_sq + inertia_tilt * lowered_tilt
     lost_lowering_tilt_by_theta_tilt_term_2 = (one_minus_lowered_tilt * (0.0
@@ -428,11 +460,11 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     lost_lowering_tilt_by_ratio_tilt = (-lost_lowering_tilt_by_theta_tilt_term_2
         * twice_J_motor_tilt_ratio_tilt)
     lost_lowering_tilt_by_theta_tilt = lost_lowering_tilt_by_ratio_tilt * ratio_tilt_by_theta_tilt
-    raised_tilt_term = d_screw_tilt_pi - f_screw_tilt_lead_tilt
-    raised_tilt_term_inverse = 1.0 / raised_tilt_term
-    raised_tilt_term_2 = d_screw_tilt_pi_f_screw_tilt + lead_tilt
-    raised_tilt_term_3 = raised_tilt_term_2 * raised_tilt_term_inverse
-    raised_tilt = d_screw_tilt_pi_lead_tilt_inverse * raised_tilt_term_3
+    d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt = d_screw_tilt_pi - f_screw_tilt_lead_tilt
+    raised_tilt_term = 1.0 / d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt
+    d_screw_tilt_pi_f_screw_tilt_plus_lead_tilt = d_screw_tilt_pi_f_screw_tilt + lead_tilt
+    raised_tilt_term_2 = d_screw_tilt_pi_f_screw_tilt_plus_lead_tilt * raised_tilt_term
+    raised_tilt = d_screw_tilt_pi_lead_tilt_inverse * raised_tilt_term_2
     raised_tilt_minus_one = raised_tilt - 1.0
     lost_raising_tilt_by_theta_tilt_term = J_motor_tilt_ratio_tilt_sq + inertia_tilt * raised_tilt
     lost_raising_tilt_by_theta_tilt_term_2 = (raised_tilt_minus_one
@@ -440,28 +472,27 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     lost_raising_tilt_by_ratio_tilt = (-lost_raising_tilt_by_theta_tilt_term_2
         * twice_J_motor_tilt_ratio_tilt)
     lost_raising_tilt_by_theta_tilt = lost_raising_tilt_by_ratio_tilt * ratio_tilt_by_theta_tilt
-    carried_tilt_term = omega_tilt_sq_ratio_tilt_by_theta_tilt * ratio_tilt
-    carried_tilt_term_2 = (J_motor_tilt * carried_tilt_term - ratio_tilt * (K_t_tilt * i_tilt
-        - b_motor_tilt_omega_tilt_ratio_tilt))
+    minus_holding_tilt_by_J_motor_tilt = omega_tilt_sq_ratio_tilt_by_theta_tilt * ratio_tilt
+    carried_tilt_term = (J_motor_tilt * minus_holding_tilt_by_J_motor_tilt
+        - ratio_tilt * (K_t_tilt * i_tilt - b_motor_tilt_omega_tilt_ratio_tilt))
     lost_lowering_tilt_term = 1.0 / abs(lost_lowering_tilt_by_theta_tilt_term)
     lost_lowering_tilt = lost_lowering_tilt_term * one_minus_lowered_tilt
-    lost_raising_tilt_term = 1.0 / lost_raising_tilt_by_theta_tilt_term
-    lost_raising_tilt = lost_raising_tilt_term * raised_tilt_minus_one
-    force_tilt_term = lost_lowering_tilt + lost_raising_tilt
-    carried_tilt = (-J_motor_tilt_ratio_tilt_sq * load_torque_tilt
-        - carried_tilt_term_2 * inertia_tilt)
+    lost_raising_tilt_by_theta_tilt_term_inverse = 1.0 / lost_raising_tilt_by_theta_tilt_term
+    lost_raising_tilt = lost_raising_tilt_by_theta_tilt_term_inverse * raised_tilt_minus_one
+    lost_lowering_tilt_plus_lost_raising_tilt = lost_lowering_tilt + lost_raising_tilt
+    carried_tilt = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt - carried_tilt_term * inertia_tilt
     carried_tilt_slide_tilt = carried_tilt * slide_tilt
     abs_carried_tilt_slide_tilt = abs(carried_tilt_slide_tilt)
     half_abs_carried_tilt_slide_tilt = 0.5 * abs_carried_tilt_slide_tilt
-    force_tilt_term_2 = -0.5 * lost_lowering_tilt + 0.5 * lost_raising_tilt
-    force_tilt = (-b_tilt_omega_tilt - carried_tilt_term_2 + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt - slide_tilt * (carried_tilt_slide_tilt * force_tilt_term_2
-        + force_tilt_term * half_abs_carried_tilt_slide_tilt))
+    force_tilt_term = -0.5 * lost_lowering_tilt + 0.5 * lost_raising_tilt
+    force_tilt = (-b_tilt_omega_tilt - carried_tilt_term + cos_tilt * gravity_cos_tilt
+        + gravity_sin_tilt * sin_tilt - slide_tilt * (carried_tilt_slide_tilt * force_tilt_term
+        + half_abs_carried_tilt_slide_tilt * lost_lowering_tilt_plus_lost_raising_tilt))
     accel_tilt = force_tilt * inverse_mass_tilt_slide_tilt_sq
     accel_tilt_twice_J_motor_tilt_ratio_tilt = accel_tilt * twice_J_motor_tilt_ratio_tilt
-    force_tilt_by_carried_tilt = (-slide_tilt * (0.5 * force_tilt_term * slide_tilt * (0.0
-        if carried_tilt_slide_tilt == 0 else math.copysign(1, carried_tilt_slide_tilt))
-        + force_tilt_term_2 * slide_tilt))
+    force_tilt_by_carried_tilt = (-slide_tilt * (force_tilt_term * slide_tilt
+        + 0.5 * lost_lowering_tilt_plus_lost_raising_tilt * slide_tilt * (0.0
+        if carried_tilt_slide_tilt == 0 else math.copysign(1, carried_tilt_slide_tilt))))
     half_carried_tilt_slide_tilt = 0.5 * carried_tilt_slide_tilt
     force_tilt_by_lost_lowering_tilt = (-slide_tilt * (0.5 * abs_carried_tilt_slide_tilt
         - half_carried_tilt_slide_tilt))
@@ -474,16 +505,16 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_theta_tilt
         - gravity_cos_tilt_sin_tilt))  # accel_tilt_by_theta_tilt
     rate_of_i_tilt_by_u_tilt = 1.0 / L_tilt
-    rate_of_i_tilt_by_theta_tilt_term = K_t_tilt * omega_tilt * rate_of_i_tilt_by_u_tilt
+    K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt = K_t_tilt * omega_tilt * rate_of_i_tilt_by_u_tilt
     # rate_of_i_tilt_by_theta_tilt
-    fx[2, 0] = -rate_of_i_tilt_by_theta_tilt_term * ratio_tilt_by_theta_tilt
+    fx[2, 0] = -K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_theta_tilt
     fx[0, 1] = 1.0  # rate_of_theta_tilt_by_omega_tilt
     carried_tilt_by_omega_tilt_term = (2.0 * J_motor_tilt * omega_tilt_ratio_tilt
         * ratio_tilt_by_theta_tilt + b_motor_tilt * ratio_tilt_sq)
     carried_tilt_by_omega_tilt = (J_motor_tilt_ratio_tilt_sq * b_tilt
         - carried_tilt_by_omega_tilt_term * inertia_tilt)
-    accel_tilt_by_omega_tilt_term = b_tilt + carried_tilt_by_omega_tilt_term
-    fx[1, 1] = (inverse_mass_tilt_slide_tilt_sq * (-accel_tilt_by_omega_tilt_term
+    b_tilt_plus_carried_tilt_by_omega_tilt_term = b_tilt + carried_tilt_by_omega_tilt_term
+    fx[1, 1] = (inverse_mass_tilt_slide_tilt_sq * (-b_tilt_plus_carried_tilt_by_omega_tilt_term
         + carried_tilt_by_omega_tilt * force_tilt_by_carried_tilt))  # accel_tilt_by_omega_tilt
     driving_torque_tilt_by_i_tilt = K_t_tilt * ratio_tilt
     # rate_of_i_tilt_by_omega_tilt
@@ -505,7 +536,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     lost_lowering_tilt_by_load_inertia_tilt = (-lost_lowering_tilt_by_theta_tilt_term_2
         * lowered_tilt)
     lost_raising_tilt_by_load_inertia_tilt = -lost_raising_tilt_by_theta_tilt_term_2 * raised_tilt
-    accel_tilt_by_load_inertia_tilt = (inverse_mass_tilt_slide_tilt_sq * (-carried_tilt_term_2
+    accel_tilt_by_load_inertia_tilt = (inverse_mass_tilt_slide_tilt_sq * (-carried_tilt_term
         * force_tilt_by_carried_tilt + force_tilt_by_lost_lowering_tilt
         * lost_lowering_tilt_by_load_inertia_tilt + force_tilt_by_lost_raising_tilt
         * lost_raising_tilt_by_load_inertia_tilt))
@@ -541,22 +572,22 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     fp[1, 7] = (inverse_mass_tilt_slide_tilt_sq * (carried_tilt_by_K_t_tilt
         * force_tilt_by_carried_tilt + driving_torque_tilt_by_K_t_tilt))  # accel_tilt_by_K_t_tilt
     fp[2, 7] = -omega_tilt_ratio_tilt * rate_of_i_tilt_by_u_tilt  # rate_of_i_tilt_by_K_t_tilt
-    carried_tilt_by_J_motor_tilt = (-carried_tilt_term * inertia_tilt
+    carried_tilt_by_J_motor_tilt = (-inertia_tilt * minus_holding_tilt_by_J_motor_tilt
         - load_torque_tilt * ratio_tilt_sq)
     lost_lowering_tilt_by_J_motor_tilt = -lost_lowering_tilt_by_theta_tilt_term_2 * ratio_tilt_sq
     lost_raising_tilt_by_J_motor_tilt = -lost_raising_tilt_by_theta_tilt_term_2 * ratio_tilt_sq
-    # accel_tilt_by_J_motor_tilt
     fp[1, 8] = (inverse_mass_tilt_slide_tilt_sq * (-accel_tilt * ratio_tilt_sq
-        + carried_tilt_by_J_motor_tilt * force_tilt_by_carried_tilt - carried_tilt_term
+        + carried_tilt_by_J_motor_tilt * force_tilt_by_carried_tilt
         + force_tilt_by_lost_lowering_tilt * lost_lowering_tilt_by_J_motor_tilt
-        + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_J_motor_tilt))
+        + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_J_motor_tilt
+        - minus_holding_tilt_by_J_motor_tilt))  # accel_tilt_by_J_motor_tilt
     driving_torque_tilt_by_b_motor_tilt = -omega_tilt * ratio_tilt_sq
     carried_tilt_by_b_motor_tilt = driving_torque_tilt_by_b_motor_tilt * inertia_tilt
     # accel_tilt_by_b_motor_tilt
     fp[1, 9] = (inverse_mass_tilt_slide_tilt_sq * (carried_tilt_by_b_motor_tilt
         * force_tilt_by_carried_tilt + driving_torque_tilt_by_b_motor_tilt))
     ratio_tilt_by_theta_tilt_by_N_tilt = (ratio_tilt_by_theta_tilt_term_2
-        - ratio_tilt_by_theta_tilt_term_5)
+        - ratio_tilt_by_theta_tilt_term_4)
     driving_torque_tilt_by_N_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
         * ratio_tilt_by_theta_tilt_by_N_tilt + force_tilt_by_ratio_tilt * ratio_tilt_by_N_tilt)
     carried_tilt_by_N_tilt = (carried_tilt_by_ratio_tilt * ratio_tilt_by_N_tilt
@@ -569,33 +600,39 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * lost_lowering_tilt_by_N_tilt + force_tilt_by_lost_raising_tilt
         * lost_raising_tilt_by_N_tilt))  # accel_tilt_by_N_tilt
     # rate_of_i_tilt_by_N_tilt
-    fp[2, 10] = -rate_of_i_tilt_by_theta_tilt_term * ratio_tilt_by_N_tilt
+    fp[2, 10] = -K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_N_tilt
     lost_lowering_tilt_by_lowered_tilt = (-inertia_tilt * lost_lowering_tilt_by_theta_tilt_term_2
         - lost_lowering_tilt_term)
     accel_tilt_by_lowered_tilt = (force_tilt_by_lost_lowering_tilt * inverse_mass_tilt_slide_tilt_sq
         * lost_lowering_tilt_by_lowered_tilt)
     lost_raising_tilt_by_raised_tilt = (-inertia_tilt * lost_raising_tilt_by_theta_tilt_term_2
-        + lost_raising_tilt_term)
+        + lost_raising_tilt_by_theta_tilt_term_inverse)
     accel_tilt_by_raised_tilt = (force_tilt_by_lost_raising_tilt * inverse_mass_tilt_slide_tilt_sq
         * lost_raising_tilt_by_raised_tilt)
-    lowered_tilt_by_lead_tilt_term = lead_tilt_inverse * lowered_tilt_term_inverse
-    lowered_tilt_term_inverse_sq = 1.0 / (lowered_tilt_term * lowered_tilt_term)
+    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
+    lowered_tilt_by_lead_tilt_term = (1.0 / (d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt
+        * d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt))
     lead_tilt_inverse_sq = 1.0 / (lead_tilt * lead_tilt)
     d_screw_tilt_pi_lead_tilt_inverse_sq = d_screw_tilt_pi * lead_tilt_inverse_sq
-    lowered_tilt_by_lead_tilt = (d_screw_tilt_pi * lowered_tilt_by_lead_tilt_term
-        + d_screw_tilt_pi_f_screw_tilt * lead_tilt_inverse * lowered_tilt_term_2
-        * lowered_tilt_term_inverse_sq + d_screw_tilt_pi_lead_tilt_inverse_sq * lowered_tilt_term_3)
-    raised_tilt_by_lead_tilt_term = lead_tilt_inverse * raised_tilt_term_inverse
-    raised_tilt_by_lead_tilt_term_2 = raised_tilt_term_2 / (raised_tilt_term * raised_tilt_term)
-    raised_tilt_by_lead_tilt_term_3 = lead_tilt_inverse * raised_tilt_by_lead_tilt_term_2
-    raised_tilt_by_lead_tilt = (d_screw_tilt_pi * raised_tilt_by_lead_tilt_term
-        + d_screw_tilt_pi_f_screw_tilt * raised_tilt_by_lead_tilt_term_3
-        - d_screw_tilt_pi_lead_tilt_inverse_sq * raised_tilt_term_3)
-    ratio_tilt_by_lead_tilt_term = math.pi * lead_tilt_inverse_sq * length_tilt_inverse
-    ratio_tilt_by_lead_tilt = -N_tilt * ratio_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt_term
+    lowered_tilt_by_lead_tilt = (d_screw_tilt_pi * lead_tilt_inverse_lowered_tilt_term
+        + d_screw_tilt_pi_f_screw_tilt * d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt
+        * lead_tilt_inverse * lowered_tilt_by_lead_tilt_term + d_screw_tilt_pi_lead_tilt_inverse_sq
+        * lowered_tilt_term_2)
+    lead_tilt_inverse_raised_tilt_term = lead_tilt_inverse * raised_tilt_term
+    raised_tilt_by_lead_tilt_term = (d_screw_tilt_pi_f_screw_tilt_plus_lead_tilt
+        / (d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt
+        * d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt))
+    raised_tilt_by_lead_tilt_term_2 = lead_tilt_inverse * raised_tilt_by_lead_tilt_term
+    raised_tilt_by_lead_tilt = (d_screw_tilt_pi * lead_tilt_inverse_raised_tilt_term
+        + d_screw_tilt_pi_f_screw_tilt * raised_tilt_by_lead_tilt_term_2
+        - d_screw_tilt_pi_lead_tilt_inverse_sq * raised_tilt_term_2)
+    lead_tilt_inverse_sq_length_tilt_inverse_pi = (math.pi * lead_tilt_inverse_sq
+        * length_tilt_inverse)
+    ratio_tilt_by_lead_tilt = (-N_tilt * lead_tilt_inverse_sq_length_tilt_inverse_pi
+        * ratio_tilt_by_N_tilt_term)
     ratio_tilt_by_theta_tilt_by_lead_tilt = (math.pi * N_tilt * lead_tilt_inverse_sq
         * length_tilt_by_theta_tilt * length_tilt_inverse_sq * ratio_tilt_by_N_tilt_term
-        - N_tilt_ratio_tilt_by_theta_tilt_term * ratio_tilt_by_lead_tilt_term)
+        - N_tilt_ratio_tilt_by_theta_tilt_term * lead_tilt_inverse_sq_length_tilt_inverse_pi)
     driving_torque_tilt_by_lead_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
         * ratio_tilt_by_theta_tilt_by_lead_tilt + force_tilt_by_ratio_tilt
         * ratio_tilt_by_lead_tilt)
@@ -611,41 +648,41 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + force_tilt_by_lost_lowering_tilt * lost_lowering_tilt_by_lead_tilt
         + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_lead_tilt))
     # rate_of_i_tilt_by_lead_tilt
-    fp[2, 11] = -rate_of_i_tilt_by_theta_tilt_term * ratio_tilt_by_lead_tilt
+    fp[2, 11] = -K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_lead_tilt
     d_screw_tilt_pi_sq = (math.pi * math.pi) * d_screw_tilt
     d_screw_tilt_pi_sq_f_screw_tilt = d_screw_tilt_pi_sq * f_screw_tilt
-    lowered_tilt_by_d_screw_tilt = ((math.pi * math.pi) * d_screw_tilt * lead_tilt_inverse
-        * lowered_tilt_term_2 * lowered_tilt_term_inverse_sq - d_screw_tilt_pi_sq_f_screw_tilt
-        * lowered_tilt_by_lead_tilt_term - lead_tilt_inverse_pi * lowered_tilt_term_3)
-    raised_tilt_by_d_screw_tilt = (-d_screw_tilt_pi_sq * raised_tilt_by_lead_tilt_term_3
-        + d_screw_tilt_pi_sq_f_screw_tilt * raised_tilt_by_lead_tilt_term
-        + lead_tilt_inverse_pi * raised_tilt_term_3)
+    lowered_tilt_by_d_screw_tilt = ((math.pi * math.pi) * d_screw_tilt
+        * d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt * lead_tilt_inverse
+        * lowered_tilt_by_lead_tilt_term - d_screw_tilt_pi_sq_f_screw_tilt
+        * lead_tilt_inverse_lowered_tilt_term - lead_tilt_inverse_pi * lowered_tilt_term_2)
+    raised_tilt_by_d_screw_tilt = (-d_screw_tilt_pi_sq * raised_tilt_by_lead_tilt_term_2
+        + d_screw_tilt_pi_sq_f_screw_tilt * lead_tilt_inverse_raised_tilt_term
+        + lead_tilt_inverse_pi * raised_tilt_term_2)
     fp[1, 12] = (accel_tilt_by_lowered_tilt * lowered_tilt_by_d_screw_tilt
         + accel_tilt_by_raised_tilt * raised_tilt_by_d_screw_tilt)  # accel_tilt_by_d_screw_tilt
     d_screw_tilt_sq_pi_sq = (math.pi * math.pi) * (d_screw_tilt * d_screw_tilt)
-    lowered_tilt_by_f_screw_tilt = (math.pi * d_screw_tilt * lowered_tilt_term_2
-        * lowered_tilt_term_inverse_sq - d_screw_tilt_sq_pi_sq * lowered_tilt_by_lead_tilt_term)
-    raised_tilt_by_f_screw_tilt = (d_screw_tilt_pi * raised_tilt_by_lead_tilt_term_2
-        + d_screw_tilt_sq_pi_sq * raised_tilt_by_lead_tilt_term)
+    lowered_tilt_by_f_screw_tilt = (math.pi * d_screw_tilt
+        * d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt * lowered_tilt_by_lead_tilt_term
+        - d_screw_tilt_sq_pi_sq * lead_tilt_inverse_lowered_tilt_term)
+    raised_tilt_by_f_screw_tilt = (d_screw_tilt_pi * raised_tilt_by_lead_tilt_term
+        + d_screw_tilt_sq_pi_sq * lead_tilt_inverse_raised_tilt_term)
     fp[1, 13] = (accel_tilt_by_lowered_tilt * lowered_tilt_by_f_screw_tilt
         + accel_tilt_by_raised_tilt * raised_tilt_by_f_screw_tilt)  # accel_tilt_by_f_screw_tilt
     cos_tilt_half_length_tilt_inverse = cos_tilt * half_length_tilt_inverse
     ratio_tilt_by_linkage_cos_tilt_term = N_tilt * lead_tilt_inverse_pi_length_tilt_inverse
-    ratio_tilt_by_linkage_cos_tilt_term_2 = ratio_tilt_by_linkage_cos_tilt_term * sin_tilt
+    ratio_tilt_by_linkage_cos_tilt_term_sin_tilt = ratio_tilt_by_linkage_cos_tilt_term * sin_tilt
     ratio_tilt_by_linkage_cos_tilt = (-cos_tilt_half_length_tilt_inverse * ratio_tilt_by_length_tilt
-        + ratio_tilt_by_linkage_cos_tilt_term_2)
+        + ratio_tilt_by_linkage_cos_tilt_term_sin_tilt)
     half_length_tilt_inverse_sin_tilt = half_length_tilt_inverse * sin_tilt
-    length_tilt_by_theta_tilt_by_linkage_cos_tilt = (cos_tilt
-        * length_tilt_by_theta_tilt_by_theta_tilt_term * ratio_tilt_by_N_tilt_term
-        + half_length_tilt_inverse_sin_tilt)
-    ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term = (cos_tilt
-        * ratio_tilt_by_linkage_cos_tilt_term)
-    ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term_2 = (N_tilt * length_tilt_by_theta_tilt
-        * ratio_tilt_by_theta_tilt_term_3)
+    length_tilt_by_theta_tilt_by_linkage_cos_tilt = (cos_tilt * quarter_length_tilt_inverse_cubed
+        * ratio_tilt_by_N_tilt_term + half_length_tilt_inverse_sin_tilt)
+    cos_tilt_ratio_tilt_by_linkage_cos_tilt_term = cos_tilt * ratio_tilt_by_linkage_cos_tilt_term
+    ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term = (N_tilt
+        * lead_tilt_inverse_pi_length_tilt_inverse_sq * length_tilt_by_theta_tilt)
     ratio_tilt_by_theta_tilt_by_linkage_cos_tilt = (-cos_tilt_half_length_tilt_inverse
-        * ratio_tilt_by_theta_tilt_by_length_tilt + length_tilt_by_theta_tilt_by_linkage_cos_tilt
-        * ratio_tilt_by_length_tilt + ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term
-        - ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term_2 * sin_tilt)
+        * ratio_tilt_by_theta_tilt_by_length_tilt + cos_tilt_ratio_tilt_by_linkage_cos_tilt_term
+        + length_tilt_by_theta_tilt_by_linkage_cos_tilt * ratio_tilt_by_length_tilt
+        - ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term * sin_tilt)
     driving_torque_tilt_by_linkage_cos_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
         * ratio_tilt_by_theta_tilt_by_linkage_cos_tilt + force_tilt_by_ratio_tilt
         * ratio_tilt_by_linkage_cos_tilt)
@@ -661,14 +698,14 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + driving_torque_tilt_by_linkage_cos_tilt + force_tilt_by_lost_lowering_tilt
         * lost_lowering_tilt_by_linkage_cos_tilt + force_tilt_by_lost_raising_tilt
         * lost_raising_tilt_by_linkage_cos_tilt))
-    ratio_tilt_by_linkage_sin_tilt = (-half_length_tilt_inverse_sin_tilt * ratio_tilt_by_length_tilt
-        - ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term)
+    ratio_tilt_by_linkage_sin_tilt = (-cos_tilt_ratio_tilt_by_linkage_cos_tilt_term
+        - half_length_tilt_inverse_sin_tilt * ratio_tilt_by_length_tilt)
     length_tilt_by_theta_tilt_by_linkage_sin_tilt = (-cos_tilt_half_length_tilt_inverse
         + 0.25 * length_tilt_inverse_cubed * ratio_tilt_by_N_tilt_term * sin_tilt)
     ratio_tilt_by_theta_tilt_by_linkage_sin_tilt = (cos_tilt
-        * ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term_2 - half_length_tilt_inverse_sin_tilt
+        * ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term - half_length_tilt_inverse_sin_tilt
         * ratio_tilt_by_theta_tilt_by_length_tilt + length_tilt_by_theta_tilt_by_linkage_sin_tilt
-        * ratio_tilt_by_length_tilt + ratio_tilt_by_linkage_cos_tilt_term_2)
+        * ratio_tilt_by_length_tilt + ratio_tilt_by_linkage_cos_tilt_term_sin_tilt)
     driving_torque_tilt_by_linkage_sin_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
         * ratio_tilt_by_theta_tilt_by_linkage_sin_tilt + force_tilt_by_ratio_tilt
         * ratio_tilt_by_linkage_sin_tilt)
@@ -686,10 +723,10 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * lost_raising_tilt_by_linkage_sin_tilt))
     linkage_cos_tilt_by_l_ground_tilt = 2.0 * l_ground_tilt
     linkage_sin_tilt_inverse = 1.0 / linkage_sin_tilt
-    linkage_sin_tilt_by_l_ground_tilt_term = linkage_cos_tilt * linkage_sin_tilt_inverse
-    linkage_sin_tilt_by_l_ground_tilt = (l_ground_tilt * linkage_sin_tilt_inverse
-        * linkage_sin_tilt_term - linkage_cos_tilt_by_l_ground_tilt
-        * linkage_sin_tilt_by_l_ground_tilt_term)
+    linkage_cos_tilt_linkage_sin_tilt_inverse = linkage_cos_tilt * linkage_sin_tilt_inverse
+    linkage_sin_tilt_by_l_ground_tilt = (four_times_r_arm_tilt_sq * l_ground_tilt
+        * linkage_sin_tilt_inverse - linkage_cos_tilt_by_l_ground_tilt
+        * linkage_cos_tilt_linkage_sin_tilt_inverse)
     length_tilt_by_l_ground_tilt = l_ground_tilt * length_tilt_inverse
     ratio_tilt_by_l_ground_tilt = length_tilt_by_l_ground_tilt * ratio_tilt_by_length_tilt
     length_tilt_by_theta_tilt_by_l_ground_tilt_term = (0.5 * length_tilt_inverse_cubed
@@ -715,17 +752,17 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + driving_torque_tilt_by_l_ground_tilt + force_tilt_by_lost_lowering_tilt
         * lost_lowering_tilt_by_l_ground_tilt + force_tilt_by_lost_raising_tilt
         * lost_raising_tilt_by_l_ground_tilt))  # accel_tilt_by_l_ground_tilt
-    rate_of_i_tilt_by_l_ground_tilt_term = (rate_of_i_tilt_by_theta_tilt_term
+    rate_of_i_tilt_by_l_ground_tilt_term = (K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt
         * ratio_tilt_by_linkage_cos_tilt)
-    rate_of_i_tilt_by_l_ground_tilt_term_2 = (rate_of_i_tilt_by_theta_tilt_term
+    rate_of_i_tilt_by_l_ground_tilt_term_2 = (K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt
         * ratio_tilt_by_linkage_sin_tilt)
     # rate_of_i_tilt_by_l_ground_tilt
-    fp[2, 14] = (-linkage_cos_tilt_by_l_ground_tilt * rate_of_i_tilt_by_l_ground_tilt_term
-        - linkage_sin_tilt_by_l_ground_tilt * rate_of_i_tilt_by_l_ground_tilt_term_2
-        - rate_of_i_tilt_by_theta_tilt_term * ratio_tilt_by_l_ground_tilt)
+    fp[2, 14] = (-K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_l_ground_tilt
+        - linkage_cos_tilt_by_l_ground_tilt * rate_of_i_tilt_by_l_ground_tilt_term
+        - linkage_sin_tilt_by_l_ground_tilt * rate_of_i_tilt_by_l_ground_tilt_term_2)
     linkage_cos_tilt_by_l_min_tilt = -2.0 * l_min_tilt_plus_s_start_tilt
     linkage_sin_tilt_by_l_min_tilt = (-linkage_cos_tilt_by_l_min_tilt
-        * linkage_sin_tilt_by_l_ground_tilt_term)
+        * linkage_cos_tilt_linkage_sin_tilt_inverse)
     accel_tilt_by_l_min_tilt = (accel_tilt_by_linkage_cos_tilt * linkage_cos_tilt_by_l_min_tilt
         + accel_tilt_by_linkage_sin_tilt * linkage_sin_tilt_by_l_min_tilt)
     fp[1, 15] = accel_tilt_by_l_min_tilt
@@ -735,7 +772,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     fp[2, 15] = rate_of_i_tilt_by_l_min_tilt
     linkage_cos_tilt_by_r_arm_tilt = 2.0 * r_arm_tilt
     linkage_sin_tilt_by_r_arm_tilt = (4.0 * l_ground_tilt_sq * linkage_sin_tilt_inverse * r_arm_tilt
-        - linkage_cos_tilt_by_r_arm_tilt * linkage_sin_tilt_by_l_ground_tilt_term)
+        - linkage_cos_tilt_by_r_arm_tilt * linkage_cos_tilt_linkage_sin_tilt_inverse)
     length_tilt_by_r_arm_tilt = length_tilt_inverse * r_arm_tilt
     ratio_tilt_by_r_arm_tilt = length_tilt_by_r_arm_tilt * ratio_tilt_by_length_tilt
     length_tilt_by_theta_tilt_by_r_arm_tilt = (-length_tilt_by_theta_tilt_by_l_ground_tilt_term
@@ -758,9 +795,9 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * lost_lowering_tilt_by_r_arm_tilt + force_tilt_by_lost_raising_tilt
         * lost_raising_tilt_by_r_arm_tilt))  # accel_tilt_by_r_arm_tilt
     # rate_of_i_tilt_by_r_arm_tilt
-    fp[2, 16] = (-linkage_cos_tilt_by_r_arm_tilt * rate_of_i_tilt_by_l_ground_tilt_term
-        - linkage_sin_tilt_by_r_arm_tilt * rate_of_i_tilt_by_l_ground_tilt_term_2
-        - rate_of_i_tilt_by_theta_tilt_term * ratio_tilt_by_r_arm_tilt)
+    fp[2, 16] = (-K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_r_arm_tilt
+        - linkage_cos_tilt_by_r_arm_tilt * rate_of_i_tilt_by_l_ground_tilt_term
+        - linkage_sin_tilt_by_r_arm_tilt * rate_of_i_tilt_by_l_ground_tilt_term_2)
     fp[1, 17] = accel_tilt_by_l_min_tilt  # accel_tilt_by_s_start_tilt
     fp[2, 17] = rate_of_i_tilt_by_l_min_tilt  # rate_of_i_tilt_by_s_start_tilt
     fp[1, 19] = (accel_tilt_by_gravity_cos_tilt * gravity_cos_tilt_by_gravity
@@ -781,7 +818,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + 0.5 * raised_tilt_minus_lowered_tilt * sign_load_torque_tilt)
     # backward_tilt_by_theta_tilt
     gx[2, 0] = -backward_tilt_by_theta_tilt_term * carried_tilt_by_theta_tilt_term
-    gx[0, 1] = -accel_tilt_by_omega_tilt_term  # holding_tilt_by_omega_tilt
+    gx[0, 1] = -b_tilt_plus_carried_tilt_by_omega_tilt_term  # holding_tilt_by_omega_tilt
     gx[1, 1] = -b_tilt * forward_tilt_by_theta_tilt_term_2  # forward_tilt_by_omega_tilt
     gx[2, 1] = -b_tilt * backward_tilt_by_theta_tilt_term  # backward_tilt_by_omega_tilt
     gx[0, 2] = driving_torque_tilt_by_i_tilt  # holding_tilt_by_i_tilt
@@ -811,7 +848,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     gp[1, 4] = -forward_tilt_by_theta_tilt_term_2 * omega_tilt  # forward_tilt_by_b_tilt
     gp[2, 4] = -backward_tilt_by_theta_tilt_term * omega_tilt  # backward_tilt_by_b_tilt
     gp[0, 7] = driving_torque_tilt_by_K_t_tilt  # holding_tilt_by_K_t_tilt
-    gp[0, 8] = -carried_tilt_term  # holding_tilt_by_J_motor_tilt
+    gp[0, 8] = -minus_holding_tilt_by_J_motor_tilt  # holding_tilt_by_J_motor_tilt
     gp[0, 9] = driving_torque_tilt_by_b_motor_tilt  # holding_tilt_by_b_motor_tilt
     gp[0, 10] = (-J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_N_tilt
         + force_tilt_by_ratio_tilt * ratio_tilt_by_N_tilt)  # holding_tilt_by_N_tilt
@@ -994,4 +1031,4 @@ EFFECTS = (
      "linear actuator with lead screw and linkage",
      "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6", "", False),
 )
-# END sha256 115f71661e26a6508164f5908929f621880b73a5614e55da3a8d3e28f334a24b
+# END sha256 6672dddbe102e9215418ca76af04e299393161b31de01c2049c7fc2f1a249932

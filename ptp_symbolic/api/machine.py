@@ -114,20 +114,36 @@ class Machine(Displayed, Model):
         """The mass matrix M [j, j] at x [n] and p [np] (defaults): M a = torques, with a row for
         every rate of `mass_matrix_rates`, in kg m^2 (kg of a linear joint).
 
-        The first call derives the equations (SymPy). Raises InputError as `rhs` does.
+        Raises InputError as `rhs` does.
 
         >>> import ptp_symbolic as ptp
         >>> ptp.load("ideal").mass_matrix([0.0, 0.0, 0.0, 0.0], {"J_y_tilt": "2 g m^2"})[1, 1]
         np.float64(0.002)
         """
+        vectors, rows = self._point(x, None, p), len(self.mass_matrix_rates)
+        matrix = np.zeros((rows, rows))
+        self.module.mass_matrix(0.0, *vectors, self._modes(0.0, *vectors), matrix)
+        return matrix
+
+    def gravity_torque(self, x: Values, p: Values | None = None, *, t: float = 0.0) -> FloatArray:
+        """The torques g [j] in N m (N) that hold the machine at x [n] against its weight, with
+        parameters p [np] (defaults): M a + c + g = torques, in the rows of `mass_matrix_rates`.
+
+        The time t in s matters on a base that moves. Raises InputError as `rhs` does.
+
+        >>> import ptp_symbolic as ptp
+        >>> ptp.load("payload").gravity_torque([0.0, 0.0, 0.0, 0.0], {"c_x_payload": "-10 cm"})
+        array([0.      , 4.897152])
+        """
         vectors = self._point(x, None, p)
-        values = np.concatenate([*vectors, self._modes(0.0, *vectors), [0.0]])
-        return np.array(self._mass_matrix(*values), dtype=np.float64)
+        torques = np.zeros(len(self.mass_matrix_rates))
+        self.module.gravity_torque(t, *vectors, self._modes(t, *vectors), torques)
+        return torques
 
     @cached_property
     def mass_matrix_rates(self) -> tuple[str, ...]:
         """The rates [j] to which the rows of the mass matrix belong."""
-        return tuple(map(str, self.equations.rates))
+        return tuple(name for name in self.state_names if name.startswith("omega_"))
 
     def inverse_dynamics(
         self,
@@ -250,20 +266,6 @@ class Machine(Displayed, Model):
                 self.module.outputs(t, x, u + sign * INPUT_STEP * np.eye(len(u))[k], p, end)
             by_u[:, k] = (ends[0] - ends[1]) / (2.0 * INPUT_STEP)
         return by_x, by_u
-
-    @cached_property
-    def _mass_matrix(self) -> Callable[..., Any]:
-        import sympy
-
-        from ptp_symbolic.symbolic.mechanics.kinematics import TIME
-
-        equations = self.equations
-        symbols = [*equations.state_symbols, *(i.symbol for i in equations.inputs)]
-        symbols += [p.symbol for p in equations.parameters]
-        symbols += [*equations.mode_symbols, TIME]
-        matrix = equations.written_out(sympy.Matrix(equations.mass_matrix))
-        compute: Callable[..., Any] = sympy.lambdify(symbols, matrix, "numpy", cse=True)
-        return compute
 
     def _known_platform(self) -> Platform:
         if self.platform is None:

@@ -10,7 +10,15 @@ import ptp_symbolic as ptp
 
 PUBLIC = [name for name in ptp.__all__ if not name.startswith("_")]
 FUNCTIONS = [name for name in PUBLIC if inspect.isfunction(getattr(ptp, name))]
-METHODS = ("rhs", "jacobian", "mass_matrix", "inverse_dynamics", "linearize", "simulate")
+METHODS = (
+    "rhs",
+    "jacobian",
+    "mass_matrix",
+    "gravity_torque",
+    "inverse_dynamics",
+    "linearize",
+    "simulate",
+)
 
 
 def test_the_public_names_are_those_that_type_checkers_see(checkout: Path) -> None:

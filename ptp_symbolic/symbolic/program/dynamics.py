@@ -22,6 +22,7 @@ from ptp_symbolic.symbolic.symbols import ZERO, real
 
 DEAD_BAND = sp.Rational(1, 10**12)  # rad/s, above the rounding of rates that are equal
 FACE_DEPTH = sp.Rational(1, 10**12)  # rad, above the rounding of angles
+GRAVITY = "gravity"  # the parameter
 
 
 @dataclass(frozen=True)
@@ -150,6 +151,20 @@ def state_rates(equations: Equations, solve: Solve) -> list[sp.Expr]:
     for state in equations.extra_states:
         by_state[state.symbol] = state.derivative
     return [by_state[symbol] for symbol in equations.state_symbols]
+
+
+def gravity_torques(equations: Equations) -> list[sp.Expr]:
+    """The torque on every row that holds it against its weight: g in M a + c + g = torques, the
+    gradient of the potential energy of gravity. It is what `forcing` loses without gravity.
+    """
+    weightless: dict[sp.Expr, sp.Expr] = {
+        p.symbol: ZERO for p in equations.parameters if p.name == GRAVITY
+    }
+    for symbol, term in equations.terms:
+        value = term.xreplace(weightless)
+        if value != term:
+            weightless[symbol] = value
+    return [row.xreplace(weightless) - row for row in equations.forcing]
 
 
 def prepared(lines: Sequence[Line], parameters: Sequence[str]) -> tuple[list[Line], list[Line]]:

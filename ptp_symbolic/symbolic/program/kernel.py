@@ -23,6 +23,13 @@ class Entry(NamedTuple):
     array: str
     indices: tuple[int, ...]
 
+    def place(self, shape: Sequence[int]) -> int:
+        """Its place in an array of this shape that is stored by rows."""
+        place = 0
+        for size, index in zip(shape, self.indices, strict=True):
+            place = place * size + index
+        return place
+
     def __str__(self) -> str:
         return f"{self.array}[{', '.join(map(str, self.indices))}]"
 

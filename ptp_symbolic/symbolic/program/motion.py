@@ -36,6 +36,8 @@ DOCS = {
         "equation_error",
         "Write torques that rows lack, then other states' rates, into r; x ends in accelerations.",
     ),
+    "M": ("mass_matrix", "Write the mass matrix of the joints, then of gear outputs, into M."),
+    "G": ("gravity_torque", "Write the torques that hold the machine against its weight into G."),
 }
 
 
@@ -57,8 +59,9 @@ def motion(
     stored_and_powers: Sequence[sp.Expr],
     vectors: Vectors,
 ) -> Motion:
-    """Vector field, guards, energy and residual, their terms shared: those of the parameters alone
-    are `constants`; those that the residual has in common with others, `mass_and_forces`.
+    """Vector field, guards, energy, residual, mass matrix and weight, their terms shared: those of
+    the parameters alone are `constants`; those that the residual has in common with others,
+    `mass_and_forces`.
     """
     given = [real(f"{GIVEN}{acceleration}") for acceleration in solve.accelerations]
     written = {
@@ -66,8 +69,11 @@ def motion(
         "g": guards,
         "r": _residual(equations, solve, given),
         "e": stored_and_powers,
+        "G": dynamics.gravity_torques(equations),
     }
     outputs = [(f"{array}[{i}]", e) for array, own in written.items() for i, e in enumerate(own)]
+    n = solve.mass.rows
+    outputs += [(f"M[{i}, {j}]", solve.mass[i, j]) for i in range(n) for j in range(n)]
     lines = share(solve.definitions, outputs, vocabulary(equations))
     prepared, forces, own = _divided(lines, vectors)
     extended = replace(prepared.vectors, x=(*vectors.x, *map(str, given)))

@@ -143,7 +143,7 @@ def _rows(equations: Equations, guards: int) -> dict[str, tuple[str, str]]:
     """Shape of the arrays that kernels write, and their units."""
     states, contacts = len(equations.state_symbols), len(equations.contacts)
     rates = "STATE_UNITS per s"
-    further = len(equations.extra_states)
+    rows, further = len(equations.rates), len(equations.extra_states)
     samples = 3 * len(equations.samplers) + len(equations.updates)
     return {
         "dx": (f"{states}", rates),
@@ -152,7 +152,9 @@ def _rows(equations: Equations, guards: int) -> dict[str, tuple[str, str]]:
         "strike": (f"{contacts * (states + 2)}", "STATE_UNITS, 1 and J"),
         "y": (f"{len(equations.outputs)}", "OUTPUT_UNITS"),
         "e": ("3", "J, W and W"),
-        "r": (f"{len(equations.rates) + further}", f"{equations.unit('N m')}, then {rates}"),
+        "r": (f"{rows + further}", f"{equations.unit('N m')}, then {rates}"),
+        "M": (f"{rows}, {rows}", equations.unit("kg m^2")),
+        "G": (f"{rows}", equations.unit("N m")),
         "z": (f"{samples}", "s, s and 1 per sampler, then STATE_UNITS"),
         "bounds": (f"{len(equations.limits)}, 2", "STATE_UNITS: lower, upper"),
         "margin": (f"{len(equations.requirements)}", "units of what is compared"),

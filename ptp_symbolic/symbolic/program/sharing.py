@@ -10,7 +10,7 @@ from ptp_symbolic.symbolic.simplify.operations import common_subexpressions
 from ptp_symbolic.symbolic.symbols import real
 
 Line = tuple[str, sp.Expr]
-MAX_NAME = 40
+MAX_NAME = 45  # letters: longer names are formulas
 PREFIX = "shared:"  # of names yet to be found, which no machine uses
 LONGEST_SUM = 3  # parts of a sum that its name says
 POWERS = {
@@ -22,7 +22,13 @@ POWERS = {
     sp.Rational(1, 2): "root",
 }
 TOLD = "="  # before the name of a term that is inlined where it is used once
-MULTIPLES = {2: "twice", 3: "thrice", sp.Rational(1, 2): "half"}
+MULTIPLES = {
+    2: "twice",
+    3: "thrice",
+    4: "four_times",
+    sp.Rational(1, 2): "half",
+    sp.Rational(1, 4): "quarter",
+}
 
 
 @dataclass(frozen=True)
@@ -316,7 +322,9 @@ def _renamed(
             result.append((name, expression))
             continue
         told = name.removeprefix(PREFIX + TOLD) if name.startswith(PREFIX + TOLD) else None
-        own = told or entries.get(real(name)) or _describe(expression) or f"{final_use[name]}_term"
+        symbol, negative = real(name), entries.get(-real(name))
+        own = told or entries.get(symbol) or _describe(expression)
+        own = own or (f"minus_{negative}" if negative else f"{final_use[name]}_term")
         readable = _unused(own, taken)
         taken.add(readable)
         names[real(name)] = real(readable)

@@ -42,12 +42,21 @@ def _targets(equations: Equations) -> dict[str, str]:
     timing = [f"{w}_{k}" for k in range(len(equations.samplers)) for w in SAMPLER_WORDS]
     sampled = _numbered("z", [*timing, *(f"next_{state}" for _, state, _ in equations.updates)])
     further = {state.name for state in equations.extra_states}
-    lacking = [f"torque_{place_of(rate)}" for rate in equations.rates]
+    places = [place_of(rate) for rate in equations.rates]
+    masses = {
+        f"M[{i}, {j}]": f"mass_{one}" if i == j else f"mass_{places[min(i, j)]}_{places[max(i, j)]}"
+        for i, one in enumerate(places)
+        for j in range(len(places))
+    }
+    weights = _numbered("G", [f"gravity_torque_{place}" for place in places])
+    lacking = [f"torque_{place}" for place in places]
     lacking += [f"rate_of_{s}" for s in map(str, equations.state_symbols) if s in further]
     errors = _numbered("r", lacking)
     words = {
         **rates,
         **errors,
+        **masses,
+        **weights,
         **guards,
         **readings,
         **energy,

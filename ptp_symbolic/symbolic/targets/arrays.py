@@ -14,14 +14,15 @@ from ptp_symbolic.symbolic.targets.words import WORDS
 @dataclass(frozen=True)
 class ArrayModule:
     """A target that is one Python module: `opening` are its imports, `ending` what follows the
-    functions, `returned` how a list of entries becomes a vector.
+    functions, `vector` how a list of entries becomes a vector, `matrix` how that becomes a matrix.
     """
 
     name: str
     summary: str
     language: Language
     opening: str
-    returned: str
+    vector: str
+    matrix: str
     ending: str
 
     def refuse(self, program: Program) -> str | None:
@@ -64,12 +65,16 @@ class ArrayModule:
         shapes = ", ".join(
             f"{a} [{n}]" for a, n in zip(own.arguments, own.sizes, strict=True) if a != "t"
         )
-        doc = textwrap.fill(f"{own.meaning} Shapes: {shapes}; returns [{len(own.entries)}].", 92)
+        size = ", ".join(map(str, own.shape))
+        doc = textwrap.fill(f"{own.meaning} Shapes: {shapes}; returns [{size}].", 92)
         lines = [f'"""{doc}"""']
         lines += [f"{name} = {array}[{k}]" for name, array, k in own.unpacked]
         lines += [f"{name} = {text}" for name, text in own.terms]
         entries = ",\n".join(f"    {entry}" for entry in own.entries)
-        lines.append(self.returned.format(f"\n{entries},\n"))
+        returned = self.vector.format(f"\n{entries},\n")
+        if len(own.shape) == 2:
+            returned = self.matrix.format(returned, *own.shape)
+        lines.append(f"return {returned}")
         text = textwrap.indent("\n".join(lines), "    ")
         return f"def {own.name}({', '.join(own.arguments)}):\n{text}"
 
@@ -119,7 +124,8 @@ CASADI = ArrayModule(
     "Python module for CasADi: SX and MX functions",
     _language("CasADi", "ca", 0),
     "import casadi as ca",
-    "return ca.vertcat({})",
+    "ca.vertcat({})",
+    "ca.reshape({0}, {2}, {1}).T",
     '''def function(name, kind=ca.SX):
     """The function `name` of this module as a casadi.Function of symbols of `kind`: SX or MX."""
     symbols = [kind.sym(a, n) for a, n in zip(ARGUMENTS[name], SIZES[name])]
@@ -131,6 +137,7 @@ JAX = ArrayModule(
     "Python module for JAX: functions for jit, vmap and grad, in double precision",
     _language("JAX", "jnp", 1),
     'import jax\nimport jax.numpy as jnp\n\njax.config.update("jax_enable_x64", True)',
-    "return jnp.array([{}])",
+    "jnp.array([{}])",
+    "{0}.reshape({1}, {2})",
     "",
 )

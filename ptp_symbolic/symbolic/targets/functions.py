@@ -1,5 +1,6 @@
 """Kernels as functions that return what they compute, for languages of arrays."""
 
+import math
 from dataclasses import dataclass
 
 import sympy as sp
@@ -13,6 +14,8 @@ KERNELS = {
     "vector_field": "mode_derivative",
     "outputs": "outputs",
     "inverse_dynamics": "equation_error",
+    "mass_matrix": "mass_matrix",
+    "gravity_torque": "gravity_torque",
     "energy": "energy",
     "guards": "guards",
     "impacts": "impacts",
@@ -23,6 +26,8 @@ MEANINGS = {
     "outputs": "Measured signals.",
     "inverse_dynamics": "Torques on the joints that the motion takes beyond the inputs u; x ends"
     " in the accelerations of the joints. Then the rates of the other states.",
+    "mass_matrix": "Mass matrix M of the joints, then of the gear outputs.",
+    "gravity_torque": "Torques g that hold the machine against its weight: M a + c + g = torques.",
     "energy": "Stored energy in J, power supplied and power dissipated in W.",
     "guards": "Per friction holding, forward and backward breakaway torque; per contact separation,"
     " half gap, torque at the upper and at the lower face.",
@@ -34,7 +39,8 @@ MEANINGS = {
 @dataclass(frozen=True)
 class Function:
     """A function of arrays `arguments` (and the time t): unpacked names, named terms, and the
-    entries [rows] of the vector that it returns, as texts of a language.
+    entries of the vector or, row by row, of the matrix of this `shape` that it returns, as texts of
+    a language.
     """
 
     name: str
@@ -44,6 +50,7 @@ class Function:
     unpacked: tuple[tuple[str, str, int], ...]
     terms: tuple[tuple[str, str], ...]
     entries: tuple[str, ...]
+    shape: tuple[int, ...]
 
 
 def functions(program: Program, language: Language) -> list[Function]:
@@ -51,24 +58,25 @@ def functions(program: Program, language: Language) -> list[Function]:
     found = []
     for name, own in KERNELS.items():
         kernel = program.kernel(own)
-        if kernel is not None and _size(kernel) > 0:
+        if kernel is not None and math.prod(_shape(kernel)) > 0:
             found.append(_function(name, kernel, language))
     return found
 
 
-def _size(kernel: Kernel) -> int:
+def _shape(kernel: Kernel) -> tuple[int, ...]:
     (written,) = kernel.written
-    return kernel.vectors.shape(written)[0]
+    return kernel.vectors.shape(written)
 
 
 def _function(name: str, kernel: Kernel, language: Language) -> Function:
-    """A kernel that writes one vector, as a function that returns it."""
-    entries = [language.expression(sp.Integer(0))] * _size(kernel)
+    """A kernel that writes one vector or matrix, as a function that returns it."""
+    shape = _shape(kernel)
+    entries = [language.expression(sp.Integer(0))] * math.prod(shape)
     terms = []
     for target, expression in kernel.body:
         text = language.expression(expression)
         if isinstance(target, Entry):
-            entries[target.indices[0]] = text
+            entries[target.place(shape)] = text
         else:
             terms.append((language.identifier(target), text))
     read = [a for a in kernel.arguments if a not in kernel.written]
@@ -81,6 +89,7 @@ def _function(name: str, kernel: Kernel, language: Language) -> Function:
         tuple((language.identifier(n), a, k) for n, a, k in kernel.unpacked),
         tuple(terms),
         tuple(entries),
+        shape,
     )
 
 

@@ -63,12 +63,17 @@ def _text(own: Function, name: str) -> str:
     shapes = ", ".join(
         f"{a} [{n}]" for a, n in zip(own.arguments, own.sizes, strict=True) if a != "t"
     )
-    doc = textwrap.wrap(f"{own.meaning} Shapes: {shapes}; value [{len(own.entries)}, 1].", 92)
+    size = ", ".join(map(str, own.shape if len(own.shape) == 2 else (*own.shape, 1)))
+    doc = textwrap.wrap(f"{own.meaning} Shapes: {shapes}; value [{size}].", 92)
     lines = [f"function value = {name}_{own.name}({', '.join(own.arguments)})"]
     lines += [f"  % {line}" for line in doc]
     lines += [f"  {term} = {array}({k + 1});" for term, array, k in own.unpacked]
     lines += [f"  {term} = {text};" for term, text in own.terms]
-    lines += ["  value = [", *(f"    ({entry})" for entry in own.entries), "  ];", "end"]
+    lines += ["  value = [", *(f"    ({entry})" for entry in own.entries), "  ];"]
+    if len(own.shape) == 2:
+        rows, columns = own.shape
+        lines.append(f"  value = reshape(value, {columns}, {rows})';")
+    lines.append("end")
     text = "\n".join(lines) + "\n"
     return text + CHOICE if "choice(" in text else text
 

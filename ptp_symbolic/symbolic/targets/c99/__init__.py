@@ -185,7 +185,7 @@ def _statement(kernel: Kernel, assignment: Assignment, language: Language) -> st
     target, expression = assignment
     text = language.expression(expression)
     if isinstance(target, Entry):
-        return f"{target.array}[{_flat(kernel, target)}] = {text};"
+        return f"{target.array}[{target.place(kernel.vectors.shape(target.array))}] = {text};"
     return f"const real {_id(target, language)} = {text};"
 
 
@@ -209,14 +209,6 @@ def _prototype_comment(kernel: Kernel) -> list[str]:
     optional = ", then ".join(kernel.optional)
     note = f" Pass 0 for what is not asked for: {optional}." if optional else ""
     return [f"/* {_comment(kernel.doc)} {'; '.join(shapes)}.{note} */"]
-
-
-def _flat(kernel: Kernel, entry: Entry) -> int:
-    """Index of an entry of an array that is stored by rows."""
-    shape, flat = kernel.vectors.shape(entry.array), 0
-    for size, index in zip(shape, entry.indices, strict=True):
-        flat = flat * size + index
-    return flat
 
 
 def _sizes(program: Program) -> dict[str, int]:
