@@ -19,7 +19,13 @@ from ptp_symbolic.numeric.simulation.signals.inputs import multisine
 from ptp_symbolic.platform import Platform, read_platform
 from ptp_symbolic.workflows.diagnosis import diagnose_platform
 
-VERDICTS = {"nothing_missing", "attributed", "ambiguous", "unexplained"}
+VERDICTS = {
+    "nothing_missing",
+    "explained",
+    "explained_up_to_group",
+    "partly_explained",
+    "unexplained",
+}
 TIMES = 0.01 * np.arange(150)  # s
 COUNT = 2.0 * np.pi / 36000.0  # rad
 SEARCH = 1.0  # s

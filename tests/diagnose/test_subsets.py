@@ -198,6 +198,24 @@ def test_a_candidate_that_rows_cannot_tell_from_a_member_is_tried_in_its_place()
     assert [sorted(c.key for c in s) for s in exchanges(rows, chosen)] == [["d", "t"]]
 
 
+@pytest.mark.parametrize("is_hidden", [False, True])
+def test_an_exchange_leaves_nothing_without_what_it_acts_on(is_hidden: bool) -> None:
+    """A twin of `a` takes its place beside what needs nothing, not beside what acts through `a`,
+    whether the rows show that or not.
+    """
+    rng = np.random.default_rng(62)
+    found = effects(rng, "ab")
+    twin = found[0].columns + 1e-3 * rng.standard_normal((ROWS, 1))
+    found += [signature("t", twin), signature("c", rng.standard_normal((ROWS, 1)), ("a",))]
+    rows = rows_of(rng, found, {"a": 1.0, "b": 1.0, "c": 1.0}, BLOCKS)
+    chosen = tuple(s.candidate for s in found if s.candidate.key in "abc")
+    if is_hidden:
+        rows = replace(rows, signatures=tuple(found[:3]))
+    assert [s for s in exchanges(rows, chosen) if "t" in {c.key for c in s}] == []
+    (instead,) = exchanges(rows, chosen[:2])
+    assert {c.key for c in instead} == {"b", "t"}
+
+
 def named(found: Regression, wanted: str) -> list[Candidate]:
     return [s.candidate for s in found.signatures if s.candidate.key in wanted]
 

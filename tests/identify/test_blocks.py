@@ -220,3 +220,15 @@ def test_blocks_end_at_the_length_that_the_correlation_asks_for() -> None:
     columns = np.column_stack([np.ones(1200), np.zeros(1200)])
     columns[505, 1] = 1.0
     assert long_blocks([1200], 40.0, columns, 1).max() + 1 == 30
+
+
+def test_columns_whose_squares_are_no_floats_are_left_out_like_others() -> None:
+    """Scaling a column by 1e200 scales its shifts by 1e-200, and no prediction."""
+    rng = np.random.default_rng(9)
+    residual, jacobian, label = rng.normal(size=60), rng.normal(size=(60, 2)), np.arange(60) // 10
+    scale = np.array([1e200, 1.0])
+    with np.errstate(all="raise", under="ignore"):
+        large = leave_blocks_out(residual, scale * jacobian, label)
+    usual = leave_blocks_out(residual, jacobian, label)
+    assert large.predicted == pytest.approx(usual.predicted, rel=1e-9)
+    assert large.shifts * scale == pytest.approx(usual.shifts, rel=1e-9)

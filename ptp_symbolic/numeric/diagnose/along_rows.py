@@ -14,7 +14,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.diagnose.candidates import Candidate, with_what_needs_it
+from ptp_symbolic.numeric.diagnose.candidates import (
+    Candidate,
+    with_what_needs_it,
+    without_member,
+)
 from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, breaks_its_law, why_unconfirmed
 from ptp_symbolic.numeric.diagnose.declared_rows import equation_space, possible
 from ptp_symbolic.numeric.diagnose.findings import looked_at
@@ -111,7 +115,7 @@ class _Motion:
         """What a member of a set gains in the rows, with what needs it; None where they do not show
         it.
         """
-        smaller = [c for c in candidates if c is not member and member.key not in c.brings]
+        smaller = without_member(candidates, member)
         return gain_along_motion(self.rows, candidates, smaller)
 
     def earns(self, candidates: Sequence[Candidate], member: Candidate) -> bool:

@@ -97,6 +97,21 @@ def with_what_needs_it(candidate: Candidate, candidates: Sequence[Candidate]) ->
     return replace(candidate, free=free, vanishing=vanishing)
 
 
+def with_what_it_brings(
+    kept: Sequence[Candidate], candidate: Candidate, candidates: Sequence[Candidate]
+) -> tuple[Candidate, ...]:
+    """The set `kept` with a candidate, and with those of `candidates` that it brings along."""
+    have = {c.key for c in kept}
+    by_key = {c.key: c for c in reversed(candidates)}
+    added = (by_key[key] for key in candidate.brings if key not in have)
+    return (*kept, *added, candidate)
+
+
+def without_member(candidates: Sequence[Candidate], member: Candidate) -> tuple[Candidate, ...]:
+    """A set without one of its members, and without those that have nothing to act on then."""
+    return with_all_they_need(tuple(c for c in candidates if c is not member))
+
+
 def with_all_they_need(candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
     """Those of `candidates` that find everything they bring among them, in the same order."""
     kept = tuple(candidates)

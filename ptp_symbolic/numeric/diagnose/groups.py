@@ -8,11 +8,17 @@ same depth; the ones that predict as well form its group.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.candidates import (
+    Candidate,
+    with_what_it_brings,
+    with_what_needs_it,
+    without_member,
+)
 from ptp_symbolic.numeric.diagnose.floor import Floor, floor_of, leaves_noise_of_inputs
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain
 from ptp_symbolic.numeric.diagnose.linear import (
@@ -80,18 +86,18 @@ def rivals(seeker: Seeker, chosen: Trial, fit: Fit) -> list[Rival]:
     begun: list[Trial] = []
     resembling: set[tuple[str, ...]] = set()
     for member in chosen.candidates:
-        kept = tuple(c for c in chosen.candidates if c is not member)
-        similar = look_alikes(task, chosen, fit, member)
+        kept = without_member(chosen.candidates, member)
+        instead = partial(with_what_it_brings, kept, candidates=task.candidates)
+        similar = look_alikes(task, chosen, fit, with_what_needs_it(member, chosen.candidates))
         begun += [
-            fitted(task, (*kept, s.candidate), s.values, chosen.fit.z, 0, fit) for s in similar
+            fitted(task, instead(s.candidate), s.values, chosen.fit.z, 0, fit) for s in similar
         ]
         along = alike_along_motion(seeker.proposals, chosen, member)
         wanted = {c.key: c for c in (*(s.candidate for s in similar), *along)}
         for candidate in wanted.values():
-            instead = (*kept, candidate)
-            if keys_of(instead) not in tried:
-                begun += in_place(task, seeker.proposals, instead, chosen)
-        resembling |= {keys_of((*kept, s.candidate)) for s in similar}
+            if keys_of(instead(candidate)) not in tried:
+                begun += in_place(task, seeker.proposals, instead(candidate), chosen)
+        resembling |= {keys_of(instead(s.candidate)) for s in similar}
     if begun:
         task.progress(f"refitting {len(begun)} sets that resemble the chosen one")
     trials = [*halving(task, begun, len(begun)), *near]

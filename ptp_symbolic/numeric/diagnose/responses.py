@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
-from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.candidates import Candidate, with_what_it_brings
 from ptp_symbolic.numeric.diagnose.linear import stacked, stacked_jacobian, stacked_residual
 from ptp_symbolic.numeric.diagnose.proposals import Proposal
 from ptp_symbolic.numeric.diagnose.signatures import brought
@@ -77,7 +77,6 @@ def responses(task: Task, trial: Trial, candidates: Sequence[Candidate]) -> list
     A candidate that needs another brings it along.
     """
     have = set(trial.keys)
-    by_key = {c.key: c for c in reversed(task.candidates)}
     wanted: dict[str, list[Candidate]] = {}
     for c in candidates:
         if c.key not in have:
@@ -97,10 +96,8 @@ def responses(task: Task, trial: Trial, candidates: Sequence[Candidate]) -> list
         nf = declared.shape[1]
         phi = to_search(fit.free, fit.values) + amounts[:nf]
         values = {**trial.values, **all_values(fit.free, phi), **found.values(amounts[nf:])}
-        added = [by_key[key] for key in candidate.brings if key not in have]
-        return Response(
-            candidate, left, Proposal((*trial.candidates, *added, candidate), values), shape
-        )
+        whole = with_what_it_brings(trial.candidates, candidate, task.candidates)
+        return Response(candidate, left, Proposal(whole, values), shape)
 
     def best_form(forms: Sequence[Candidate]) -> Response | None:
         seen: SeenColumns = {}

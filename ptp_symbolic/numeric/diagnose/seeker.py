@@ -13,7 +13,12 @@ Every candidate of a set in the simplest of its forms that will do.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from ptp_symbolic.numeric.diagnose.candidates import Candidate, with_all_they_need
+from ptp_symbolic.numeric.diagnose.candidates import (
+    Candidate,
+    with_all_they_need,
+    with_what_it_brings,
+    without_member,
+)
 from ptp_symbolic.numeric.diagnose.declared_fit import beside_declared
 from ptp_symbolic.numeric.diagnose.findings import Step, Tried, is_earned, looked_at, step_of
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
@@ -67,13 +72,12 @@ def screened(
     part = replace(task, train=task.few)
     z = fitted(part, kept, values, None, executor=task.executor).fit.z
     have = {c.key for c in kept}
-    by_key = {c.key: c for c in reversed(task.candidates)}
 
     def begun(candidate: Candidate) -> Trial:
-        added = [by_key[key] for key in candidate.brings if key not in have]
-        own = {name: f.start for c in (*added, candidate) for f in c.free for name in f.names}
+        candidates = with_what_it_brings(kept, candidate, task.candidates)
+        added = candidates[len(kept) :]
+        own = {name: f.start for c in added for f in c.free for name in f.names}
         whole = {**values, **own, **candidate.shapes[0]}
-        candidates = (*kept, *added, candidate)
         starts = [whole, start_for(task, found, candidates, whole, linear=True)]
         return ranked([fitted(part, candidates, start, z) for start in starts])[0]
 
@@ -189,9 +193,7 @@ class Seeker:
         few iterations gains no more at their end, and one that gains nearly all still does: these
         fits are not brought there. `briefly` it is not begun anew either.
         """
-        kept = tuple(
-            c for c in trial.candidates if c is not candidate and candidate.key not in c.brings
-        )
+        kept = without_member(trial.candidates, candidate)
         if not kept:
             return self.declared
         begun = ranked(taken_over(self.task, kept, trial))[0]

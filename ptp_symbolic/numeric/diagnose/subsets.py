@@ -117,7 +117,7 @@ def exchanges(found: Regression, candidates: Sequence[Candidate]) -> list[tuple[
         for other in range(len(found.signatures))
         if other not in own
     ]
-    every = [folds.subset(chosen) for chosen in sets if folds.is_complete(chosen)]
+    every = [folds.subset(chosen) for chosen in sets if folds.is_complete(chosen, hidden)]
     keys = frozenset(c.key for c in candidates)
     best: dict[frozenset[str], tuple[Candidate, ...]] = {}
     for subset in sorted(every, key=lambda s: s.loss):
@@ -203,9 +203,11 @@ class _Folds:
         self.matrices = sum(matrices) - matrices
         self.sides = sum(sides) - sides
 
-    def is_complete(self, chosen: Sequence[int]) -> bool:
-        """Whether no key occurs twice and everything that is brought along is there."""
-        candidates = [self.found.signatures[i].candidate for i in chosen]
+    def is_complete(self, chosen: Sequence[int], hidden: Sequence[Candidate] = ()) -> bool:
+        """Whether no key occurs twice and everything that is brought along is there, in the set
+        with those of its candidates that are `hidden` from the rows.
+        """
+        candidates = [*(self.found.signatures[i].candidate for i in chosen), *hidden]
         keys = [c.key for c in candidates]
         return len(set(keys)) == len(keys) and all(set(c.brings) <= set(keys) for c in candidates)
 

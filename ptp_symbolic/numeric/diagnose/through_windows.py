@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.candidates import Candidate, with_what_it_brings
 from ptp_symbolic.numeric.diagnose.cut_runs import growing, led, led_through, settled
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise, most_hidden
 from ptp_symbolic.numeric.diagnose.left_over import Carried
@@ -61,10 +61,10 @@ def through_windows(
     few = growing(task, few=True)
     hidden = 1.0 if is_white else most_hidden(task)
     most = ABOVE_NOISE * np.hypot(hidden, carried.most)
-    values = _first_lead(few, parent, candidate, most) if few else None
+    candidates = with_what_it_brings(parent.candidates, candidate, task.candidates)
+    values = _first_lead(few, parent, candidates, most) if few else None
     if values is None:
         return None
-    candidates = (*parent.candidates, candidate)
     trial = to_its_end(task, fitted(task, candidates, values, None), carried)
     parts = growing(task)
     for _ in range(CYCLES):
@@ -79,11 +79,12 @@ def through_windows(
 
 
 def _first_lead(
-    parts: Sequence[Task], parent: Trial, candidate: Candidate, most: FloatArray
+    parts: Sequence[Task], parent: Trial, candidates: Sequence[Candidate], most: FloatArray
 ) -> Mapping[str, float] | None:
-    """Values where windows lead the candidate; None where windows that it leaves as they are hold
-    more than `most` [ny] times their noise, and where it does not gain materially in the longest:
-    each begins by itself, so that short ones leave little of an effect that acts late.
+    """Values where windows lead the last of `candidates`, with those that it brings along; None
+    where windows that it leaves as they are hold more than `most` [ny] times their noise, and where
+    it does not gain materially in the longest: each begins by itself, so that short ones leave
+    little of an effect that acts late.
 
     It begins at the amount of its start, to which all others follow first: from where they make up
     for it a search does not find back. And in every part at the best of several amounts, all others
@@ -91,10 +92,11 @@ def _first_lead(
     """
     shortest, run = parts[0], parts[0].executor
     alone = led(shortest, parent.candidates, parent.values)
-    starts = [{**_amounts(candidate, 1.0), **shape} for shape in candidate.shapes]
+    added = candidates[len(parent.candidates) :]
+    shapes = added[-1].shapes
+    starts = [{**_amounts(added, 1.0), **shape} for shape in shapes]
     if not any(_may_be_all(shortest, alone, start, most) for start in starts):
         return None
-    candidates = (*parent.candidates, candidate)
 
     def followed(start: Mapping[str, float]) -> Trial:
         part = replace(shortest, fixed={**shortest.fixed, **start})
@@ -110,7 +112,7 @@ def _first_lead(
         else:
             alone = led(part, parent.candidates, alone.values)
             jobs = [run.submit(led, part, candidates, t.values) for t in with_it]
-        jobs += [run.submit(_scanned, part, alone, candidate, s) for s in candidate.shapes]
+        jobs += [run.submit(_scanned, part, alone, added, s) for s in shapes]
         found = [job.result() for job in jobs]
         with_it = [found[k] for k in np.argsort(misfits(found))[:SCREENED]]
     cost = misfits([alone, with_it[0]])
@@ -118,18 +120,21 @@ def _first_lead(
     return with_it[0].values if cost[1] <= cost[0] + least_change else None
 
 
-def _scanned(part: Task, alone: Trial, candidate: Candidate, shape: Mapping[str, float]) -> Trial:
-    """A trial with the best of several amounts of a candidate of some `shape`, fitted on."""
-    candidates = (*alone.candidates, candidate)
-    values = [{**alone.values, **_amounts(candidate, k), **shape} for k in AMOUNTS]
+def _scanned(
+    part: Task, alone: Trial, added: Sequence[Candidate], shape: Mapping[str, float]
+) -> Trial:
+    """A trial with the best of several amounts of what is added, of some `shape`, fitted on."""
+    candidates = (*alone.candidates, *added)
+    values = [{**alone.values, **_amounts(added, k), **shape} for k in AMOUNTS]
     begun = [fitted(part, candidates, v, alone.fit.z) for v in values]
     return led(part, candidates, ranked(begun)[0].values)
 
 
-def _amounts(candidate: Candidate, factor: float) -> dict[str, float]:
-    """What switches a candidate on, at its start times a factor."""
+def _amounts(candidates: Sequence[Candidate], factor: float) -> dict[str, float]:
+    """What switches candidates on, each at its start times a factor."""
     return {
         n: float(np.clip(factor * f.start, f.lower, f.upper))
+        for candidate in candidates
         for f in candidate.defining
         for n in f.names
     }

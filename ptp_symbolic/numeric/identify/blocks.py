@@ -121,9 +121,18 @@ def long_blocks(
         longest = max(length, 0.5 * longest)
 
 
+def _lengths(jacobian: FloatArray) -> FloatArray:
+    """Norms of the columns [n, nf], also of those whose squares are no floats: where a simulation
+    multiplies small changes its derivatives may be.
+    """
+    largest = np.abs(jacobian).max(axis=0, initial=0.0)
+    unit = np.ldexp(1.0, np.frexp(np.where(largest > 0.0, largest, 1.0))[1] - 1)
+    return np.asarray(unit * np.linalg.norm(jacobian / unit, axis=0))
+
+
 def inverse_root(jacobian: FloatArray) -> FloatArray:
     """Directions [nf, seen] in which the columns of `jacobian` are orthonormal."""
-    size = np.linalg.norm(jacobian, axis=0)
+    size = _lengths(jacobian)
     unit = np.where(size > 0.0, size, 1.0)
     _, spread, directions = np.linalg.svd(jacobian / unit, full_matrices=False)
     seen = spread**2 > NOTHING * max(float(spread[0]) ** 2 if len(spread) else 0.0, 1e-300)
@@ -159,10 +168,10 @@ def leave_blocks_out(
     predicted, shifts, leverage = residual.copy(), np.zeros((blocks, nf)), np.zeros(blocks)
     if nf == 0:
         return LeftOut(predicted, shifts, leverage)
-    size = np.linalg.norm(jacobian, axis=0)
+    size = _lengths(jacobian)
     size = np.where(size > 0.0, size, 1.0)
     scaled = jacobian / size
-    information = scaled.T @ scaled + np.diag(prior / size**2)
+    information = scaled.T @ scaled + np.diag((np.sqrt(prior) / size) ** 2)
     known = information + ridge * np.eye(nf)
     for block in range(blocks):
         rows = np.flatnonzero(label == block)
