@@ -165,8 +165,8 @@ def simulate_batch(
     "largest(theta_pan)", "rms(omega_pan)", "final(theta_tilt)", "settling_time(theta_pan; 1 mrad)",
     "rms_error(theta_pan; step:0.3@0.5)", "pointing_error(theta_pan = 0.3; theta_tilt = 0)".
     `noise` adds white noise of a standard deviation to signals, of a generator of its own per run;
-    `seeds` is the first seed (0), or all of them [n]. `device` "gpu" runs a trajectory per thread of
-    an NVIDIA GPU and keeps final states: smooth machines as here, others in fixed steps of `step` s.
+    `seeds` is the first seed (0), or all of them [n]. `device` "gpu" runs a trajectory per thread
+    of an NVIDIA GPU and keeps final states: smooth machines as here, others in steps of `step` s.
 
     A run equals that of `simulate` without ledger: for smooth models within the tolerances, bit for
     bit for all others. A run that fails leaves NaN and its reason, and the others finish. Raises
@@ -320,7 +320,7 @@ def _on_gpu(
     atol: float,
     step: float,
 ) -> BatchStates:
-    """The first and the last state of every run, computed on a GPU; as `integrate_on_gpu` has it."""
+    """The first and the last state of every run, as `integrate_on_gpu` has it."""
     from ptp_symbolic.numeric.gpu.batch import integrate_on_gpu
 
     found = integrate_on_gpu(
