@@ -37,7 +37,6 @@ from typing import Any
 
 import numpy as np
 from batch_peers import batches
-from event_peers import simulate_with_scipy
 from log_reading import log_reading
 from rich.console import Console
 from rich.table import Table
@@ -46,6 +45,7 @@ from scipy.integrate import solve_ivp
 from timing import Row, best
 
 import ptp_symbolic
+from ptp_symbolic.api.scipy_peer import simulate_with_scipy
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation import integration

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,7 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
 from ptp_symbolic.numeric.simulation.lanes import (
     IMPOSSIBLE,
     BatchProblem,
+    BatchStates,
     integrate_batch,
     outputs_along,
 )
@@ -42,8 +44,10 @@ from ptp_symbolic.platform.units import quantity
 FloatArray = NDArray[np.float64]
 Column = float | str | ArrayLike
 Columns = Mapping[str, Column]
+_Integrate = Callable[[BatchProblem, FloatArray, FloatArray, NDArray[np.int64]], BatchStates]
 
 FINAL, ALL = "final", "all"
+PROCESSOR, GPU = "cpu", "gpu"
 WORDS = {
     DONE: "done",
     IMPOSSIBLE: "impossible",
@@ -148,6 +152,8 @@ def simulate_batch(
     threads: int | None = None,
     *,
     x0: Columns | None = None,
+    device: str = PROCESSOR,
+    step: float = 1e-4,
     **values: Any,
 ) -> Batch:
     """Simulate a machine n times, on all cores: `parameters` and `initial` states (`x0`) by name,
@@ -159,7 +165,8 @@ def simulate_batch(
     "largest(theta_pan)", "rms(omega_pan)", "final(theta_tilt)", "settling_time(theta_pan; 1 mrad)",
     "rms_error(theta_pan; step:0.3@0.5)", "pointing_error(theta_pan = 0.3; theta_tilt = 0)".
     `noise` adds white noise of a standard deviation to signals, of a generator of its own per run;
-    `seeds` is the first seed (0), or all of them [n].
+    `seeds` is the first seed (0), or all of them [n]. `device` "gpu" runs a trajectory per thread
+    of an NVIDIA GPU and keeps final states: smooth machines as here, others in steps of `step` s.
 
     A run equals that of `simulate` without ledger: for smooth models within the tolerances, bit for
     bit for all others. A run that fails leaves NaN and its reason, and the others finish. Raises
@@ -182,15 +189,20 @@ def simulate_batch(
     wanted.refuse_too_large(count, len(t))
     p, p_given = _matrix(machine, columns, machine.parameter_names, "Parameter", count)
     x, x_given = _matrix(machine, start, machine.state_names, "Initial state", count)
-    chosen = None if method is None else chosen_method(machine, method, METHODS)
+    wanted.refuse_device(device)
+    on_gpu = device == GPU
+    chosen = method if method is None or on_gpu else chosen_method(machine, method, METHODS)
     accuracy = checked_accuracy(machine, rtol, atol, largest_step or LARGEST_STEP)
-    if largest_step is None and lanes.suits(machine, chosen, accuracy):
+    if largest_step is None and (on_gpu or lanes.suits(machine, chosen, accuracy)):
         accuracy = replace(accuracy, largest_step=LARGEST_SMOOTH_STEP)
     kinds = [[kind.get(n, constant(0.0)) for n in machine.input_names] for kind in drives]
     grid = t if wanted.grid else t[[0, -1]]
     problem = BatchProblem(machine, grid, kinds, chosen, accuracy)
     drive = np.zeros(count, np.int64) if len(kinds) == 1 else np.arange(count)
-    result = _run(problem, wanted, p, x, drive, _seeds(seeds, count), threads)
+    integrate: _Integrate = partial(integrate_batch, threads=threads)
+    if on_gpu:
+        integrate = partial(_on_gpu, rtol=rtol, atol=atol, step=step)
+    result = _run(problem, wanted, p, x, drive, _seeds(seeds, count), integrate)
     return replace(result, t=t, given={**p_given, **x_given})
 
 
@@ -234,6 +246,16 @@ class _Wanted:
         of_reductions = (name for each in self.reductions for name in each.signals)
         return tuple(dict.fromkeys((*self.final, *self.signals, *of_reductions)))
 
+    def refuse_device(self, device: str) -> None:
+        """Raise InputError for a device that is unknown or does not keep what is wanted."""
+        if device not in (PROCESSOR, GPU):
+            raise unknown("device", device, (PROCESSOR, GPU))
+        if device == GPU and self.grid:
+            raise InputError(
+                "A GPU keeps final states alone; ask for the outputs 'final' or 'final(SIGNAL)', or"
+                " leave `device` out."
+            )
+
     def refuse_too_large(self, count: int, k: int) -> None:
         """Raise InputError where the results do not fit into memory."""
         need = 8.0 * count * (len(self.signals) * k + len(self.final) + len(self.reductions))
@@ -261,7 +283,7 @@ def _run(
     x: FloatArray,
     drive: NDArray[np.int64],
     seeds: NDArray[np.int64],
-    threads: int | None,
+    integrate: _Integrate,
 ) -> Batch:
     """All runs, chunk by chunk: only what is wanted is kept."""
     machine, count, k = machine_of(problem.model), len(p), len(problem.times)
@@ -273,7 +295,7 @@ def _run(
     rows = max(lanes_together(machine), int(CHUNK_BYTES / (8.0 * k * x.shape[1])))
     for first in range(0, count, rows):
         part = slice(first, min(first + rows, count))
-        found = integrate_batch(problem, p[part], x[part], drive[part], threads)
+        found = integrate(problem, p[part], x[part], drive[part])
         status[part], steps[part] = found.status, found.steps
         reasons |= {first + b: why for b, why in enumerate(found.reasons) if why}
         own = _signals(problem, wanted, p[part], drive[part], found.x, seeds[part])
@@ -287,6 +309,35 @@ def _run(
     units |= {each.text: each.unit for each in wanted.reductions}
     words = np.array([WORDS[int(each)] for each in status])
     return Batch(machine, problem.times, numbers, signals, units, {}, words, reasons, seeds, steps)
+
+
+def _on_gpu(
+    problem: BatchProblem,
+    p: FloatArray,
+    x: FloatArray,
+    drive: NDArray[np.int64],
+    rtol: float,
+    atol: float,
+    step: float,
+) -> BatchStates:
+    """The first and the last state of every run, as `integrate_on_gpu` has it."""
+    from ptp_symbolic.numeric.gpu.batch import integrate_on_gpu
+
+    found = integrate_on_gpu(
+        problem.model,
+        p,
+        x,
+        problem.drives,
+        drive,
+        (float(problem.times[0]), float(problem.times[-1])),
+        problem.method,
+        step,
+        rtol,
+        atol,
+        problem.accuracy.largest_step,
+    )
+    ends = np.stack([x, found.x], axis=1)
+    return BatchStates(found.status, found.reasons, found.steps, ends)
 
 
 def lanes_together(machine: Machine) -> int:

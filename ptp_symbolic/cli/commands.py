@@ -5,6 +5,7 @@ import sys
 
 import click
 
+from ptp_symbolic.cli.bench import bench
 from ptp_symbolic.cli.check import check
 from ptp_symbolic.cli.diagnose import diagnose, fit
 from ptp_symbolic.cli.experiment import experiment
@@ -32,6 +33,7 @@ for command in (
     simulate,
     sensitivity,
     sweep,
+    bench,
     check,
     friction_map,
     fit,

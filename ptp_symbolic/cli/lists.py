@@ -13,10 +13,10 @@ def _show(rows: Sequence[Mapping[str, str]], as_json: bool) -> None:
     if as_json:
         click.echo(json.dumps(rows, indent=2))
         return
-    _print_table(rows)
+    print_table(rows)
 
 
-def _print_table(rows: Sequence[Mapping[str, str]]) -> None:
+def print_table(rows: Sequence[Mapping[str, str]]) -> None:
     """One row per line, names whole; only on a terminal the last columns wrap to its width."""
     from rich.console import Console
     from rich.markup import escape
@@ -81,7 +81,7 @@ def _explain(name: str, as_json: bool) -> None:
             click.echo(f"  to separate it: {kind['separating_experiment']}")
         if kind["parameters"]:
             click.echo()
-            _print_table([_as_row(parameter) for parameter in kind["parameters"]])
+            print_table([_as_row(parameter) for parameter in kind["parameters"]])
 
 
 def described(kind: Any) -> dict[str, Any]:

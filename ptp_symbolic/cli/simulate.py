@@ -85,7 +85,7 @@ def simulate(
     check_writable(out)
     platform, model = declared_platform(source), load(source)
     refuse_unknown_signals(platform, model)
-    signals, end = _signals(platform, model, inputs, duration)
+    signals, end = given_signals(platform, model, inputs, duration)
     found = model.simulate(
         output_times(end, every),
         inputs=signals,
@@ -133,7 +133,7 @@ def sensitivity(
 
     check_writable(out)
     platform, model = declared_platform(source), load(source)
-    signals, end = _signals(platform, model, inputs, duration)
+    signals, end = given_signals(platform, model, inputs, duration)
     found = run(
         model,
         output_times(end, every),
@@ -165,7 +165,7 @@ def initial_states(model: Any, given: Sequence[str]) -> dict[str, float]:
     return values
 
 
-def _signals(
+def given_signals(
     platform: Platform, model: Any, inputs: Sequence[str], duration: float | None
 ) -> tuple[dict[str, Any], float]:
     """The inputs as signals by name, and the end of the simulation in s."""

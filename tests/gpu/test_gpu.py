@@ -221,3 +221,22 @@ def test_rigid_faces_strike_and_rest_as_in_single_fixed_steps(kind: str) -> None
     assert found.status.tolist() == [DONE, DONE, IMPOSSIBLE]
     assert "beyond a rigid face" in found.reasons[2]
     assert found.x[:2] == pytest.approx(single, abs=1e-11)
+
+
+def test_a_batch_on_a_gpu_follows_its_exponentials_and_keeps_its_failures() -> None:
+    damping = np.array([1e-3, -1.0, 2e-3])
+    given = {"tau_pan": 0.01, "J_pan": 5e-4, "b_pan": damping, "rtol": 1e-7, "atol": 1e-8}
+    batch = ptp.simulate_batch("ideal", 0.5, device="gpu", **given)
+    assert batch.status.tolist() == ["done", "impossible", "done"]
+    assert "'b_pan' = -1" in batch.reasons[1] and np.isnan(batch["omega_pan"][1])
+    inertia = 5e-4 + ptp.load("ideal").defaults["J_z_tilt"]
+    b = damping[[0, 2]]
+    speed = 0.01 / b * (1.0 - np.exp(-b * 0.5 / inertia))
+    assert batch["omega_pan"][[0, 2]] == pytest.approx(speed, rel=1e-6)
+
+
+def test_a_batch_on_a_gpu_refuses_what_it_does_not_keep() -> None:
+    with pytest.raises(InputError, match="A GPU keeps final states alone"):
+        ptp.simulate_batch("ideal", 0.5, outputs="all", device="gpu")
+    with pytest.raises(InputError, match="Unknown device 'gpus': did you mean 'gpu'"):
+        ptp.simulate_batch("ideal", 0.5, device="gpus")
