@@ -92,6 +92,8 @@ def measure_speed(
     0.3 Hz. `quick` takes fewer repeats and runs. Raises InputError as `simulate` does, and
     SimulationError where the machine does not reach the end.
     """
+    if not 0.0 < duration < float("inf"):
+        raise InputError(f"Duration {duration:g} s; give a positive number of seconds.")
     here, begun = computer(), time.perf_counter()
     machine = load(source)
     loaded = time.perf_counter() - begun
