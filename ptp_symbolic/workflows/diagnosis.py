@@ -9,14 +9,14 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.black_box import require_library
 from ptp_symbolic.numeric.data import log_files, read_split_logs
 from ptp_symbolic.numeric.diagnose.preparation import turned_inputs
-from ptp_symbolic.numeric.identify.evidence import Evidence, recording
+from ptp_symbolic.numeric.identify.evidence import recording
 from ptp_symbolic.numeric.identify.work import Allowance
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.workflows.against_black_box import against_black_box
 from ptp_symbolic.workflows.preparation import look_at, workers
 from ptp_symbolic.workflows.provenance import provenance
 from ptp_symbolic.workflows.result import Output, Progress
-from ptp_symbolic.workflows.stored_evidence import FILE, Header, Keeper, read_evidence
+from ptp_symbolic.workflows.stored_evidence import FILE, Header, Keeper, keeper_of
 from ptp_symbolic.workflows.structure_choice import Logs, chosen_structure
 from ptp_symbolic.workflows.write_up import written_up
 
@@ -64,9 +64,9 @@ def diagnose_platform(
         "train": [str(Path(path).resolve()) for path in fitted],
         "validate": [str(Path(path).resolve()) for path in judging],
     }
-    keeper = _keeper(Header.of(platform, sources, options), resume, keep)
+    keeper = keeper_of(Header.of(platform, sources, options), resume, keep)
     noted = look_at(platform, train_logs, (*train_logs, *validate_logs), progress)
-    with workers() as executor, _kept(keeper):
+    with workers() as executor, recorded_in(keeper):
         work = keeper.evidence.work
         allowance = Allowance(work, samples=effort * SAMPLES, seconds=limit)
         logs = Logs(tuple(train_logs), tuple(validate_logs), executor, progress, allowance)
@@ -86,17 +86,8 @@ def diagnose_platform(
     return replace(found, files=files)
 
 
-def _keeper(header: Header, resume: Path | None, keep: Path | None) -> Keeper:
-    """What keeps the evidence of a diagnosis, with all that is known of it from before."""
-    if resume is None:
-        return Keeper(header, Evidence(), keep)
-    path, before, entries = read_evidence(resume)
-    before.refuse_other(path, header)
-    return Keeper(header, Evidence(entries), keep)
-
-
 @contextmanager
-def _kept(keeper: Keeper) -> Iterator[None]:
+def recorded_in(keeper: Keeper) -> Iterator[None]:
     """Record evidence, and write it as it grows, and where something ends it early."""
     keeper.evidence.changed = keeper.write_if_due
     try:

@@ -349,8 +349,6 @@ def table() -> str:
     """The rules as a table of the documentation."""
     rows = ["| Rule | It asks | Where |", "|---|---|---|"]
     for rule in RULES:
-        places = dict.fromkeys(
-            p.removeprefix("ptp_symbolic.").replace(":", ".") for p in rule.where
-        )
+        places = [p.removeprefix("ptp_symbolic.").replace(":", ".") for p in rule.where]
         rows.append(f"| {rule.name} | {rule.asks} | {', '.join(f'`{p}`' for p in places)} |")
     return "\n".join(rows) + "\n"

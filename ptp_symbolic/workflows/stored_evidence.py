@@ -102,6 +102,17 @@ class Keeper:
         return written(self.header, self.evidence.entries())
 
 
+def keeper_of(header: Header, resume: Path | None, keep: Path | None) -> Keeper:
+    """What keeps the evidence of a diagnosis in a folder, with all that is known of it from
+    before. Raises InputError where that is of something else.
+    """
+    if resume is None:
+        return Keeper(header, Evidence(), keep)
+    path, before, entries = read_evidence(resume)
+    before.refuse_other(path, header)
+    return Keeper(header, Evidence(entries), keep)
+
+
 def written(header: Header, entries: Mapping[str, Entry]) -> bytes:
     """A file of NumPy (npz) with the header and the entries as JSON, and the arrays of real numbers
     one after the other.

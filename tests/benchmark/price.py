@@ -124,7 +124,7 @@ class Case:
             return once(key_of("model", platform), lambda: model_of(platform))
 
         def task(platform: Platform, own: Any, *rest: Any) -> Task:
-            *logs, declared, executor, progress, allowance = rest
+            *_, declared, executor, _progress, allowance = rest
             key = key_of("task", platform, own, declared)
             found = once(key, lambda: task_for(platform, own, *rest))
             material = material_of(platform)

@@ -21,13 +21,12 @@ from typing import Any, Generic, ParamSpec, TypeVar, overload
 
 import numpy as np
 
+from ptp_symbolic.numeric.identify.constants import KEY_BYTES
 from ptp_symbolic.numeric.identify.work import Work, tallied, uncounted
 
 Arguments = ParamSpec("Arguments")
 Item = TypeVar("Item")
 Result = TypeVar("Result")
-
-BYTES = 16  # of a key: 1e6 evaluations have two alike with a chance of 1e-27
 
 
 class NotStoredError(Exception):
@@ -285,7 +284,7 @@ def derived(
 
 def key_of(name: str, *values: Any) -> str:
     """The key of an evaluation of some name, made from `values`."""
-    digest = hashlib.blake2b(name.encode(), digest_size=BYTES)
+    digest = hashlib.blake2b(name.encode(), digest_size=KEY_BYTES)
     _feed(digest.update, values)
     return digest.hexdigest()
 

@@ -22,6 +22,11 @@ class Work:
     samples: int = 0
     _lock: threading.Lock = field(default_factory=threading.Lock, repr=False)
 
+    @property
+    def evidence_parts(self) -> tuple[()]:
+        """Nothing that is evaluated depends on it."""
+        return ()
+
     def add(self, samples: int, tangents: bool = False) -> None:
         """Count a run that was simulated, also in every `tallied` part that it belongs to."""
         tallies = _TALLIES.get()
