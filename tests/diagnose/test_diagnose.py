@@ -197,23 +197,21 @@ def test_evidence_of_something_else_is_refused(kept: Path, tmp_path: Path) -> No
     refused(f"other logs: 'validate {log.name}' is not the same")
 
 
+@pytest.mark.long
 def test_a_rule_has_the_price_that_a_hand_gives_it(
     kept: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Where nothing is confirmed, something is missing without a name; where validation runs need
-    gain nothing, the verdict stays; and a refit that was not made is not there.
+    """Of a word that is always the same a right answer is missed; where validation runs need gain
+    nothing, it stays; and a refit that was not made is not there.
     """
     verdict = "ptp_symbolic.numeric.diagnose.verdict"
-
-    def unconfirmed(seeker, trial, steps, refused):
-        return seeker.declared, [], seeker.declared.fit
 
     def from_elsewhere(seeker, chosen, refused=None):
         moved = {n: 1.01 * v for n, v in chosen.values.items()}
         fitted(seeker.task, chosen.candidates, moved, None)
 
     rules = (
-        Rule("confirmed", "", (f"{verdict}:confirmed",), unconfirmed),
+        Rule("word", "", (f"{verdict}:word_of",), lambda *given: "unexplained"),
         Rule("validated", "", (f"{verdict}:is_borne_out",), lambda *given: True),
         Rule("elsewhere", "", (f"{verdict}:rivals",), from_elsewhere),
     )
@@ -221,8 +219,8 @@ def test_a_rule_has_the_price_that_a_hand_gives_it(
     said = list(price.prices([kept], "", simulate=False))
     assert said == [
         "sample: right: explained (base_tilt)",
-        "confirmed: 1 right -> missed",
-        "    sample: explained (base_tilt) -> unexplained (no name)",
+        "word: 1 right -> missed",
+        "    sample: explained (base_tilt) -> unexplained (base_tilt)",
         "validated: 1 none",
         "elsewhere: 1 need evaluations that were not made, 1 at first",
     ]
