@@ -15,8 +15,8 @@ from typing import Any
 from unittest.mock import patch
 
 from ptp_symbolic.numeric.data import Log, read_split_logs
-from ptp_symbolic.numeric.diagnose import search, structures
-from ptp_symbolic.numeric.diagnose.proposals import propose
+from ptp_symbolic.numeric.diagnose import along_rows, search, structures
+from ptp_symbolic.numeric.diagnose.proposals import in_rows_of, propose
 from ptp_symbolic.numeric.diagnose.trial import Task
 from ptp_symbolic.numeric.identify.evidence import (
     Entry,
@@ -134,7 +134,12 @@ class Case:
             parts = given.whole, given.free, given.candidates
             return once(key_of("proposals", given, *parts), lambda: propose(given))
 
+        def in_rows(given: Task, space: Any, values: Any, beside: Any) -> Any:
+            parts = given.whole, given.free, given.candidates, space.half_width, values, beside
+            return once(key_of("rows", given, *parts), lambda: in_rows_of(given, space, *parts[4:]))
+
         with (
+            patch.object(along_rows, "in_rows_of", in_rows),
             patch.object(structure_choice, "model_of", model),
             patch.object(structure_fits, "model_of", model),
             patch.object(structure_choice, "task_for", task),

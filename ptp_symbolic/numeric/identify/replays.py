@@ -213,9 +213,12 @@ def with_input_noise(
     def changed() -> Sequence[FloatArray]:
         return _shaken(fit, declared_noise, executor)
 
-    if not is_recording():
-        return replace(fit, shaken=changed())
-    return replace(fit, shaken=derived("input noise", (fit, declared_noise), changed))
+    shaken: Sequence[FloatArray]
+    if is_recording():
+        shaken = derived("input noise", (fit, declared_noise), changed)
+    else:
+        shaken = changed()
+    return replace(fit, shaken=shaken) if len(shaken) else fit
 
 
 def _shaken(
