@@ -263,6 +263,8 @@ def diagnose(
     time_limit: float | None = None,
     effort: float = 1.0,
     black_box: bool = False,
+    resume: Path | str | None = None,
+    keep: Path | str | None = None,
     progress: Progress = _silent,
 ) -> Diagnosis:
     """Fit `platform` to the logs `train`, find the effect that is missing, and validate it on the
@@ -271,8 +273,11 @@ def diagnose(
     `platform` is what `load` takes; logs are files, folders, or logs of `read_log`. The search ends
     with what it has tried when it has simulated so many samples (4e8, times `effort`), which
     is the same on every machine, and after `time_limit` s (None: 900) at the latest; with
-    `black_box` the result is compared with black-box models. Raises InputError for logs and
-    platforms that do not fit each other, for a run in both parts, and for limits that are none.
+    `black_box` the result is compared with black-box models. What was evaluated is written into the
+    folder `keep` meanwhile, and into the folder of the result; `resume` names such a folder, or the
+    evidence.npz in it, to go on from. Raises InputError for logs and platforms that do not fit each
+    other, for a run in both parts, for limits that are none, and for evidence of other logs,
+    another platform or another version.
 
     >>> import ptp_symbolic as ptp
     >>> folder = ptp.sample("tilted_base")
@@ -292,6 +297,8 @@ def diagnose(
             rivals=black_box,
             time_limit=time_limit,
             effort=effort,
+            resume=None if resume is None else Path(resume),
+            keep=None if keep is None else Path(keep),
         )
     )
 

@@ -58,6 +58,11 @@ def repeated(args: Sequence[str], options: Collection[str]) -> list[str]:
     default=1.0,
     help="How much the search may simulate, as a multiple of the usual.",
 )
+@click.option(
+    "--resume",
+    type=Path,
+    help="Evidence of an earlier run to go on from: its --out, or the evidence.npz in it.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print diagnosis.json instead of tables.")
 def diagnose(
     source: str,
@@ -67,9 +72,13 @@ def diagnose(
     black_box: bool,
     time_limit: float | None,
     effort: float,
+    resume: Path | None,
     as_json: bool,
 ) -> None:
-    """Find the effect that is missing from a declared platform, from its logs."""
+    """Find the effect that is missing from a declared platform, from its logs.
+
+    What was evaluated is kept in evidence.npz in --out, also when the run is interrupted.
+    """
     from ptp_symbolic.atomic_files import check_writable, write_files_atomically
     from ptp_symbolic.models.committed import declared_platform
     from ptp_symbolic.workflows.diagnosis import diagnose_platform
@@ -83,7 +92,7 @@ def diagnose(
     command = shlex.join(["ptp-symbolic", *words, "--out", str(out)])
     with progress_line() as say:
         found = diagnose_platform(
-            platform, train, validate, say, command, black_box, time_limit, effort
+            platform, train, validate, say, command, black_box, time_limit, effort, resume, out
         )
     write_files_atomically(out, found.files)
     note_defaults(platform)

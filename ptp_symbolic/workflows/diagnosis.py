@@ -1,18 +1,22 @@
 """Diagnose a declared platform: search for what it lacks, and decide."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.black_box import require_library
 from ptp_symbolic.numeric.data import log_files, read_split_logs
 from ptp_symbolic.numeric.diagnose.preparation import turned_inputs
+from ptp_symbolic.numeric.identify.evidence import recording
 from ptp_symbolic.numeric.identify.work import Allowance
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.workflows.against_black_box import against_black_box
 from ptp_symbolic.workflows.preparation import look_at, workers
 from ptp_symbolic.workflows.provenance import provenance
 from ptp_symbolic.workflows.result import Output, Progress
+from ptp_symbolic.workflows.stored_evidence import FILE, Header, Keeper, keeper_of
 from ptp_symbolic.workflows.structure_choice import Logs, chosen_structure
 from ptp_symbolic.workflows.write_up import written_up
 
@@ -29,6 +33,8 @@ def diagnose_platform(
     rivals: bool = False,
     time_limit: float | None = None,
     effort: float = 1.0,
+    resume: Path | None = None,
+    keep: Path | None = None,
 ) -> Output:
     """Fit `platform` to the `train` logs, find what it lacks, judge on the `validate` logs.
 
@@ -36,8 +42,10 @@ def diagnose_platform(
     compared with models that know no physics. The search ends
     with what it has tried when it has simulated `effort` times SAMPLES samples, the same on every
     machine, or at the latest after `time_limit`, in s (None: TIME_LIMIT); the verdict and the
-    report follow. Raises InputError for logs and platforms that do not fit each other, for a run in
-    both, for limits that are none, and for rivals without the library that they need.
+    report follow. What was evaluated is taken from the evidence in the file or folder `resume`, and
+    written into the folder `keep` meanwhile. Raises InputError for logs and platforms that do not
+    fit each other, for a run in both, for limits that are none, for rivals without the library that
+    they need, and for evidence of other logs, another platform or another version.
     """
     limit = TIME_LIMIT if time_limit is None else time_limit
     if not limit > 0.0:
@@ -50,9 +58,17 @@ def diagnose_platform(
     train_logs, validate_logs = read_split_logs(fitted, judging, platform)
     read = {"train": (fitted, train_logs), "validate": (judging, validate_logs)}
     sources = provenance(platform, read, command)
+    options = {
+        "effort": effort,
+        "platform": None if platform.source is None else str(Path(platform.source).resolve()),
+        "train": [str(Path(path).resolve()) for path in fitted],
+        "validate": [str(Path(path).resolve()) for path in judging],
+    }
+    keeper = keeper_of(Header.of(platform, sources, options), resume, keep)
     noted = look_at(platform, train_logs, (*train_logs, *validate_logs), progress)
-    with workers() as executor:
-        allowance = Allowance(samples=effort * SAMPLES, seconds=limit)
+    with workers() as executor, recorded_in(keeper):
+        work = keeper.evidence.work
+        allowance = Allowance(work, samples=effort * SAMPLES, seconds=limit)
         logs = Logs(tuple(train_logs), tuple(validate_logs), executor, progress, allowance)
         choice = chosen_structure(platform, logs)
         chosen = choice.chosen
@@ -65,7 +81,21 @@ def diagnose_platform(
             beside = against_black_box(
                 chosen.platform, chosen.task, chosen.found, chosen.verdict, validate_logs
             )
-        return written_up(platform, choice, noted, sources, beside)
+        found = written_up(platform, choice, noted, sources, beside)
+    files = {FILE: keeper.content(), **found.files}  # the one named last is written last
+    return replace(found, files=files)
+
+
+@contextmanager
+def recorded_in(keeper: Keeper) -> Iterator[None]:
+    """Record evidence, and write it as it grows, and where something ends it early."""
+    keeper.evidence.changed = keeper.write_if_due
+    try:
+        with recording(keeper.evidence):
+            yield
+    except BaseException:
+        keeper.write()
+        raise
 
 
 def _cut_short(allowance: Allowance, effort: float) -> str:

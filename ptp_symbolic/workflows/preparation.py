@@ -1,7 +1,7 @@
 """What comes before any fit: logs looked at, runs matched to the model, workers."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from concurrent.futures import Executor, ThreadPoolExecutor
+from concurrent.futures import Executor
 from contextlib import contextmanager
 
 from threadpoolctl import threadpool_limits
@@ -12,8 +12,9 @@ from ptp_symbolic.numeric.data import Log, refuse_motionless, refuse_wrapped_ang
 from ptp_symbolic.numeric.diagnose.preparation import task_of
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, usable_cores
 from ptp_symbolic.numeric.identify.constants import MATERIAL
+from ptp_symbolic.numeric.identify.evidence import InTurn, simulates
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
-from ptp_symbolic.numeric.identify.work import Allowance
+from ptp_symbolic.numeric.identify.work import Allowance, Threads
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.ahead import (
     HELD_SAMPLES,
@@ -37,7 +38,8 @@ def workers() -> Iterator[Executor]:
     """One thread per core that the process may use, for runs side by side; threads of the linear
     algebra would be in their way.
     """
-    with threadpool_limits(limits=1), ThreadPoolExecutor(usable_cores()) as executor:
+    threads = Threads(usable_cores()) if simulates() else InTurn()
+    with threadpool_limits(limits=1), threads as executor:
         yield executor
 
 

@@ -6,12 +6,16 @@
     python -m tests.benchmark table --out DIR [--half ...] [--only REGEX]
     python -m tests.benchmark draw  --out DIR [--half ...] [--only REGEX] FILE.png
     python -m tests.benchmark constants --out DIR --half build --only REGEX [--jobs N]
+    python -m tests.benchmark price [--simulate] [--rule REGEX] FOLDER...
 
 `run` makes what is missing and leaves out what has an outcome; with --scale, a chosen constant, or
 all of a section of their table, "effort" for one, are taken times the factor. With --redraw, the
 sets of the build half are drawn anew, surroundings and all, once for every N: what is right on the
 half may be right by chance. `table` also writes table.md and table.json into DIR. `constants` runs
-a few sets with every chosen constant halved and doubled in turn, and prints a row for each.
+a few sets with every chosen constant halved and doubled in turn, and prints a row for each. `price`
+decides again upon the evidence in folders, of sets or of `ptp-symbolic diagnose`, without one rule
+after the other, and prints the verdicts that change; with --simulate, what is missing for that is
+simulated, and added to the evidence.
 """
 
 import argparse
@@ -76,7 +80,7 @@ def draw(arguments: argparse.Namespace) -> None:
     """Draw power and confusion of the sets that have an outcome."""
     from tests.benchmark.draw import draw_all
 
-    draw_all(read_results(chosen(arguments), arguments.out), arguments.file)
+    draw_all(read_results(chosen(arguments), arguments.out), arguments.files[0])
 
 
 def one(arguments: argparse.Namespace) -> None:
@@ -85,12 +89,22 @@ def one(arguments: argparse.Namespace) -> None:
     diagnose_one(arguments.out, cores, arguments.scale)
 
 
+def price(arguments: argparse.Namespace) -> None:
+    """Print what each rule is worth."""
+    from tests.benchmark.price import prices
+
+    rule, simulate = arguments.rule, arguments.simulate
+    for line in prices([Path(folder) for folder in arguments.files], rule, simulate):
+        print(line, flush=True)
+
+
 COMMANDS = {
     "make": make,
     "run": run,
     "table": tabulate,
     "draw": draw,
     "constants": constants,
+    "price": price,
     "diagnose-one": one,
 }
 
@@ -103,17 +117,25 @@ def main() -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("command", choices=COMMANDS)
-    parser.add_argument("file", nargs="?", type=Path, help="picture that draw writes")
-    parser.add_argument("--out", type=Path, required=True, help="folder of the sets")
+    parser.add_argument(
+        "files", nargs="*", type=Path, help="picture that draw writes; folders with evidence"
+    )
+    parser.add_argument("--out", type=Path, help="folder of the sets")
     parser.add_argument("--half", choices=["build", "report"])
     parser.add_argument("--only", default="", metavar="REGEX", help="part of the identity")
     parser.add_argument("--jobs", type=int, default=1, help="sets at a time")
     parser.add_argument("--scale", metavar="WHICH=FACTOR", help="of constants that were chosen")
     parser.add_argument("--redraw", type=int, metavar="N", help="the build half in other draws")
+    parser.add_argument("--rule", default="", metavar="REGEX", help="part of the name of rules")
+    parser.add_argument("--simulate", action="store_true", help="what is not stored for a price")
     parser.add_argument("--cores", default="0", help=argparse.SUPPRESS)
     arguments = parser.parse_intermixed_args()
-    if arguments.command == "draw" and arguments.file is None:
+    if arguments.command == "draw" and len(arguments.files) != 1:
         parser.error("draw needs the file to write")
+    if arguments.command == "price" and not arguments.files:
+        parser.error("price needs folders with evidence")
+    if arguments.command != "price" and arguments.out is None:
+        parser.error(f"{arguments.command} needs --out, the folder of the sets")
     if arguments.command == "constants" and arguments.half != "build":
         parser.error("constants is for --half build alone: nothing is chosen on the report half")
     if arguments.redraw is not None and arguments.half != "build":

@@ -1,6 +1,7 @@
 """Make and diagnose sets, each in a process of its own on its share of the cores.
 
-Per set: diagnosis.json as the package writes it, outcome.json with times, memory and the score.
+Per set: diagnosis.json as the package writes it, the evidence.npz that it rests on, which `price`
+decides upon again, and outcome.json with times, memory and the score.
 A set whose outcome exists is left alone, so that a run can be taken up again.
 """
 
@@ -47,14 +48,17 @@ def diagnose_one(folder: Path, cores: Sequence[int], scale: str | None = None) -
 
     from ptp_symbolic.platform import read_platform
     from ptp_symbolic.workflows.diagnosis import diagnose_platform
+    from ptp_symbolic.workflows.stored_evidence import FILE
 
     begun = time.monotonic()
     platform = read_platform(folder / "platform.toml")
     train, validate = (sorted((folder / half).glob("*.csv")) for half in ("train", "validate"))
-    summary = diagnose_platform(platform, train, validate).summary
+    found = diagnose_platform(platform, train, validate, keep=folder)
+    summary = found.summary
     wall = time.monotonic() - begun
     usage = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
     cpu = sum(one.ru_utime + one.ru_stime for one in usage)
+    (folder / FILE).write_bytes(bytes(found.files[FILE]))  # type: ignore[arg-type]
     (folder / "diagnosis.json").write_text(json.dumps(summary, indent=1, default=float) + "\n")
     (folder / "usage.json").write_text(
         json.dumps({"wall_s": round(wall, 2), "cpu_s": round(cpu, 2)}) + "\n"
@@ -93,7 +97,7 @@ def run_one(
     """Make and diagnose a set, write its outcome.json and return it."""
     folder = out / entry.id
     make_missing(entry, folder)
-    for stale in ("diagnosis.json", "usage.json"):
+    for stale in ("diagnosis.json", "usage.json", "evidence.npz"):
         (folder / stale).unlink(missing_ok=True)
     arguments = ["diagnose-one", "--out", str(folder), "--cores", ",".join(map(str, cores))]
     arguments += [] if scale is None else ["--scale", scale]

@@ -2,15 +2,23 @@
 
 import hashlib
 import json
+import shutil
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from ptp_symbolic.cli.diagnose import _print_diagnosis
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.diagnose.trial import fitted
+from ptp_symbolic.numeric.identify import evaluate
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.diagnosis import diagnose_platform
+from ptp_symbolic.workflows.rules import Rule
+from ptp_symbolic.workflows.stored_evidence import FILE, read_evidence, written
+from tests.benchmark import price
 from tests.documentation.pages import assert_prints, blocks
 
 pytestmark = pytest.mark.early
@@ -129,6 +137,93 @@ def test_files_are_complete_and_the_extended_platform_reads(sample, tmp_path) ->
     path.write_text(sample.files["platform.toml"], encoding="utf-8")
     extended = read_platform(path)
     assert extended.effects[-1].effect == "base_tilt"
+
+
+@pytest.fixture(scope="module")
+def kept(sample, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the sample, its truth, and the evidence of its diagnosis."""
+    folder = tmp_path_factory.mktemp("kept") / "sample"
+    shutil.copytree(SAMPLE, folder)
+    (folder / FILE).write_bytes(sample.files[FILE])
+    truth = {"kind": "single", "effects": ["base_tilt"], "axes": [None], "hidden": []}
+    (folder / "truth.json").write_text(json.dumps(truth), encoding="utf-8")
+    return folder
+
+
+def test_a_finished_diagnosis_is_decided_again_without_a_simulation(
+    sample, kept: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    simulated: list[object] = []
+    monkeypatch.setattr(evaluate, "integrate", lambda *arguments, **options: simulated.append(1))
+    platform = read_platform(SAMPLE / "platform.toml")
+    again = diagnose_platform(platform, [SAMPLE / "train"], [SAMPLE / "validate"], resume=kept)
+    assert not simulated
+    first, second = (
+        {k: v for k, v in found.summary.items() if k not in ("black_box", "provenance")}
+        for found in (sample, again)
+    )
+    assert json.dumps(first) == json.dumps(second)
+    for name, curve in sample.curves.items():
+        assert np.array_equal(curve["time"], again.curves[name]["time"])
+        for signal, values in curve["signals"].items():
+            assert np.array_equal(values["after"], again.curves[name]["signals"][signal]["after"])
+
+
+def test_evidence_of_something_else_is_refused(kept: Path, tmp_path: Path) -> None:
+    """A log of which one digit is another, a platform with another value, another version, and a
+    file that is no evidence.
+    """
+    folder = tmp_path / "other"
+    shutil.copytree(kept, folder)
+    platform = read_platform(SAMPLE / "platform.toml")
+
+    def refused(text: str, platform=platform, resume: Path = kept) -> None:
+        with pytest.raises(InputError, match=text) as told:
+            diagnose_platform(platform, [folder / "train"], [folder / "validate"], resume=resume)
+        assert "\n" not in str(told.value)
+
+    refused("platform.toml': holds no evidence", resume=kept / "platform.toml")
+    refused("holds no evidence", resume=tmp_path)
+    start, *others = platform.parameters
+    other = replace(start, value=1.5 * start.value)
+    refused("another platform file", replace(platform, parameters=(other, *others)))
+    _, header, entries = read_evidence(kept)
+    (tmp_path / FILE).write_bytes(written(replace(header, version="0.0.9"), entries))
+    refused("version 0.0.9, this is", resume=tmp_path)
+    log = min((folder / "validate").glob("*.csv"))
+    text = log.read_text(encoding="utf-8")
+    place = text.rindex("1")
+    log.write_text(f"{text[:place]}2{text[place + 1 :]}", encoding="utf-8")
+    refused(f"other logs: 'validate {log.name}' is not the same")
+
+
+@pytest.mark.long
+def test_a_rule_has_the_price_that_a_hand_gives_it(
+    kept: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a word that is always the same a right answer is missed; where validation runs need gain
+    nothing, it stays; and a refit that was not made is not there.
+    """
+    verdict = "ptp_symbolic.numeric.diagnose.verdict"
+
+    def from_elsewhere(seeker, chosen, refused=None):
+        moved = {n: 1.01 * v for n, v in chosen.values.items()}
+        fitted(seeker.task, chosen.candidates, moved, None)
+
+    rules = (
+        Rule("word", "", (f"{verdict}:word_of",), lambda *given: "unexplained"),
+        Rule("validated", "", (f"{verdict}:is_borne_out",), lambda *given: True),
+        Rule("elsewhere", "", (f"{verdict}:rivals",), from_elsewhere),
+    )
+    monkeypatch.setattr(price, "RULES", rules)
+    said = list(price.prices([kept], "", simulate=False))
+    assert said == [
+        "sample: right: explained (base_tilt)",
+        "word: 1 right -> missed",
+        "    sample: explained (base_tilt) -> unexplained (base_tilt)",
+        "validated: 1 none",
+        "elsewhere: 1 need evaluations that were not made, 1 at first",
+    ]
 
 
 DIRECTION = "direction_dependent_friction"

@@ -24,7 +24,7 @@ from ptp_symbolic.numeric.diagnose.held_out import (
     is_quiet,
 )
 from ptp_symbolic.numeric.diagnose.left_over import Carried
-from ptp_symbolic.numeric.diagnose.trial import Trial, mean_squares
+from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.diagnose.verdict import (
     EXPLAINED,
     NOTHING_MISSING,
@@ -34,6 +34,7 @@ from ptp_symbolic.numeric.diagnose.verdict import (
     word_of,
 )
 from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE
+from ptp_symbolic.numeric.identify.evaluate import mean_squares
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.run import sizes
 from tests.identify.curves import Floats

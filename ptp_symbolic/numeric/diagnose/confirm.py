@@ -8,6 +8,7 @@ integrate both; the rows of the equation space do.
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -43,6 +44,7 @@ from ptp_symbolic.numeric.identify.coordinates import to_search
 from ptp_symbolic.numeric.identify.equation_fit import linearised
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace, row_motion
 from ptp_symbolic.numeric.identify.evaluate import evaluate
+from ptp_symbolic.numeric.identify.evidence import recorded
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.intervals import chance_of_zero
 from ptp_symbolic.numeric.identify.run import with_inputs
@@ -90,12 +92,20 @@ def is_done_by_others(fit: Fit, candidate: Candidate) -> bool:
     linear prediction: a small part of it is left beside them, and changes the mean square by less
     than errors of simulations do.
     """
+    square, whole, left = _beside_others(fit, candidate)
+    return square < min(ELSEWHERE * whole, LITTLE * left)
+
+
+@recorded()
+def _beside_others(fit: Fit, candidate: Candidate) -> tuple[float, float, float]:
+    """Sums of squares: of what is left of a candidate beside what all other parameters can do, of
+    all that it does, and of the residual.
+    """
     rows = _rows_of(fit)
     others = {f.name for f in fit.free} - set(candidate.parameters)
     effect = effect_of(fit, candidate.vanishing, rows.columns)
     square = left_beside(fit, effect, others, rows.columns)
-    left = float(rows.residual @ rows.residual)
-    return square < min(ELSEWHERE * float(effect @ effect), LITTLE * left)
+    return square, float(effect @ effect), float(rows.residual @ rows.residual)
 
 
 def leads(fit: Fit, candidate: Candidate) -> bool:
@@ -134,30 +144,51 @@ def unstable_without(fit: Fit, candidate: Candidate, refit: Refit | None = None)
     out says nothing. What linear prediction finds so is fitted without the run where a `refit` is
     given: breakaways are no straight line.
     """
+    found = _without_each_run(fit, candidate)
+    for name, share, left in zip(found.names, found.shares, found.left, strict=True):
+        if share > 1.0 - ELSEWHERE or left >= MOST:
+            continue
+        anew = None if refit is None else refit(name)
+        if anew is None or anew.failed or not found.left_at(fit, anew.values) >= MOST:
+            return name
+    return None
+
+
+@dataclass(frozen=True, eq=False)
+class _WithoutRuns:
+    """By the `names` of the logs, the `shares` of the square of an effect that each holds, and how
+    much of the effect is `left` without it, by linear prediction; by `change` [nf] per unit of the
+    search coordinates from where they are `at` [nf].
+    """
+
+    names: tuple[str, ...]
+    shares: tuple[float, ...]
+    left: tuple[float, ...]
+    change: FloatArray
+    at: FloatArray
+
+    def left_at(self, fit: Fit, values: Mapping[str, float]) -> float:
+        """How much of the effect is left at other values."""
+        return 1.0 + float(self.change @ (to_search(fit.free, values) - self.at))
+
+
+@recorded(_WithoutRuns)
+def _without_each_run(fit: Fit, candidate: Candidate) -> _WithoutRuns:
+    """What `unstable_without` asks of every log; of no log where there is no effect."""
     names, residual, columns, step, label = _rows_of(fit)
-    left = leave_blocks_out(residual, columns, label)
+    shifts = leave_blocks_out(residual, columns, label).shifts
     own = [k for k, f in enumerate(fit.free) if f.name in candidate.parameters]
     others = [k for k in range(len(fit.free)) if k not in own]
     whole = effect_of(fit, candidate.vanishing, columns) + columns[:, own] @ step[own]
     effect = projected_off(whole[:, None], columns[:, others])[:, 0]
-    mine = projected_off(columns[:, own], columns[:, others])
     square, at = float(effect @ effect), to_search(fit.free, fit.values) + step
+    change = np.zeros(len(at))
     if square == 0.0:
-        return None
-
-    def holds(shift: FloatArray) -> bool:
-        return float((effect + mine @ shift[own]) @ effect) >= MOST * square
-
-    for number, name in enumerate(names):
-        here = label == number
-        if float(effect[here] @ effect[here]) > (1.0 - ELSEWHERE) * square:
-            continue
-        if holds(left.shifts[number]):
-            continue
-        anew = None if refit is None else refit(name)
-        if anew is None or anew.failed or not holds(to_search(fit.free, anew.values) - at):
-            return name
-    return None
+        return _WithoutRuns((), (), (), change, at)
+    change[own] = projected_off(columns[:, own], columns[:, others]).T @ effect / square
+    squares = np.bincount(label, effect**2, len(names)) / square
+    left = 1.0 + shifts @ change
+    return _WithoutRuns(tuple(names), tuple(squares.tolist()), tuple(left.tolist()), change, at)
 
 
 class _Rows(NamedTuple):
@@ -188,6 +219,13 @@ def answers_to_inputs(task: Task, trial: Trial) -> bool:
     """Whether the inputs move the fitted model by more than it leaves over: a model so inert that
     free starts alone follow the logs explains nothing.
     """
+    changed, left = _without_inputs(task, trial)
+    return changed > left
+
+
+@recorded()
+def _without_inputs(task: Task, trial: Trial) -> tuple[float, float]:
+    """Sums of squares: of what the inputs change in the outputs, and of what the trial leaves."""
     p, none = task.model.parameter_vector(trial.values), np.zeros(0, dtype=np.int64)
     changed = left = 0.0
     for (run, e), z in zip(trial.fit.pairs(), trial.fit.z, strict=True):
@@ -196,7 +234,7 @@ def answers_to_inputs(task: Task, trial: Trial) -> bool:
         if found.failed is None:
             changed += float(np.sum((found.residual - e.residual) ** 2))
             left += float(np.sum(e.residual**2))
-    return changed > left
+    return changed, left
 
 
 def breaks_its_law(

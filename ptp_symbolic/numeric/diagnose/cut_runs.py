@@ -27,7 +27,6 @@ from ptp_symbolic.numeric.diagnose.trial import (
     continued,
     fitted,
     is_alike,
-    mean_squares,
 )
 from ptp_symbolic.numeric.identify.constants import (
     CYCLES,
@@ -38,7 +37,8 @@ from ptp_symbolic.numeric.identify.constants import (
     SHORT,
     WIDE_STEP,
 )
-from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate
+from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate, mean_squares
+from ptp_symbolic.numeric.identify.evidence import recorded
 from ptp_symbolic.numeric.identify.robust_loss import MANY_RUNS, weighted_median
 from ptp_symbolic.numeric.identify.run import Run, sizes, with_start
 from ptp_symbolic.numeric.identify.run_starts import has_linked, linked, starts_in_place
@@ -72,6 +72,7 @@ def parted_at_lost_samples(model: Model, run: Run, p: FloatArray) -> tuple[Run, 
     )
 
 
+@recorded()
 def _matters(model: Model, run: Run, p: FloatArray, gaps: IntArray) -> bool:
     """Whether inputs that change at the beginning of the gaps before the samples `gaps`, not at
     their ends, move a signal by more than its noise.

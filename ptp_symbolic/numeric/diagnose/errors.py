@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.constants import MOST
 from ptp_symbolic.numeric.identify.evaluate import Evaluation, simulated_signals
+from ptp_symbolic.numeric.identify.evidence import recorded
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.run import Run
 
@@ -43,6 +44,7 @@ def angle_columns(run: Run) -> list[int]:
     return found or list(range(len(run.signals)))
 
 
+@recorded()
 def error_of(fit: Fit, units: dict[str, str], floor: FloatArray | None = None) -> dict[str, Any]:
     """Errors of `fit` in total, by run and by signal, and those `without` the run or window that
     alone holds most of the error, None where none does; those of a `floor` [ny], in units of the
@@ -128,6 +130,7 @@ def _signal_error(
     return {"rmse": rms, "unit": unit, "rmse_counts": rms / count if np.isfinite(count) else None}
 
 
+@recorded()
 def curves_of(parts: Mapping[str, tuple[Fit, Fit]]) -> dict[str, Any]:
     """Inputs, measured and simulated signals [n] in SI of every run of each part ("train",
     "validate"), by the declared and by the final model; the windows of a run joined at the times

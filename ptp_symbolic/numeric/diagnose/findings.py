@@ -18,6 +18,8 @@ from ptp_symbolic.numeric.diagnose.trial import (
     ranked,
 )
 from ptp_symbolic.numeric.identify.constants import FALSE_ALARM
+from ptp_symbolic.numeric.identify.evaluate import Evaluation
+from ptp_symbolic.numeric.identify.evidence import Deferred
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,14 +115,23 @@ def worth_keeping(trials: Sequence[Trial], best: Trial) -> list[Trial]:
 
 
 def _lighter(trial: Trial) -> Trial:
-    if all(e.by_parameter.dtype == np.float32 for e in trial.fit.evaluations):
+    whole = trial.fit.evaluations
+    if isinstance(whole, Deferred):
+        if whole.is_single:
+            return trial
+        return replace(trial, fit=replace(trial.fit, evaluations=whole.as_single(_in_single)))
+    if all(e.by_parameter.dtype == np.float32 for e in whole):
         return trial
-    evaluations = tuple(
+    return replace(trial, fit=replace(trial.fit, evaluations=_in_single(whole)))
+
+
+def _in_single(evaluations: Sequence[Evaluation]) -> tuple[Evaluation, ...]:
+    """Evaluations with Jacobians in single precision."""
+    return tuple(
         replace(
             e,
             by_parameter=e.by_parameter.astype(np.float32),
             by_start=e.by_start.astype(np.float32),
         )
-        for e in trial.fit.evaluations
+        for e in evaluations
     )
-    return replace(trial, fit=replace(trial.fit, evaluations=evaluations))

@@ -20,12 +20,14 @@ from ptp_symbolic.numeric.diagnose.left_over import Carried, left_over, with_eve
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
-    mean_squares,
 )
 from ptp_symbolic.numeric.identify.constants import (
     ABOVE_NOISE,
     TUNING,
 )
+from ptp_symbolic.numeric.identify.evaluate import mean_squares
+from ptp_symbolic.numeric.identify.evidence import recorded
+from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.noise import (
     POLES,
     Noise,
@@ -68,14 +70,24 @@ def floor_of(task: Task, trial: Trial, carried: Carried) -> Floor:
     does (and not by that of the inputs), or where its slow part is not there while the model rests,
     model error has a colour: the floor is white then, as it is for a task whose noise is.
     """
-    fit = with_every_residual(task, trial.fit)
+    white = np.ones(len(trial.fit.runs[0].signals))
+    if task.white:
+        return Floor(white, white, carried)
+    floor = Floor(*_of_its_colour(task, trial.fit, carried), carried)
+    return floor if leaves_noise_alone(trial, floor) else Floor(white, white, carried)
+
+
+@recorded()
+def _of_its_colour(task: Task, fit: Fit, carried: Carried) -> tuple[FloatArray, FloatArray]:
+    """The `noise` and the `largest` of a floor [ny], with the colour of the residual of a fit."""
+    fit = with_every_residual(task, fit)
     runs = fit.runs
     rms, most = np.ones(len(runs[0].signals)), np.ones(len(runs[0].signals))
     squares = mean_squares(fit.evaluations, runs)
     hidden = most_hidden(task)
     usual = squares <= TUNING**2 * np.maximum(left_over(fit) ** 2, 1.0)
     for column, signal in enumerate(runs[0].signals):
-        if signal not in task.declared_noise and not task.white:
+        if signal not in task.declared_noise:
             series = [e.residual.reshape(r.measured.shape)[:, column] for r, e in fit.pairs()]
             measured = [run.measured[:, column] * run.weight[column] for run in runs]
             kept = np.flatnonzero(usual[:, column])
@@ -90,9 +102,7 @@ def floor_of(task: Task, trial: Trial, carried: Carried) -> Floor:
             quiet = max(1.0, most_in_quietest([parts for parts in by_log if parts]))
             rms[column] = min(noise.rms, _with_hidden(noise.pole), quiet)
             most[column] = min(noise.most, hidden[column], quiet)
-    floor = Floor(rms, most, carried)
-    white = np.ones(len(rms))
-    return floor if leaves_noise_alone(trial, floor) else Floor(white, white, carried)
+    return rms, most
 
 
 def _slow_part(series: Sequence[FloatArray], noise: Noise) -> float:

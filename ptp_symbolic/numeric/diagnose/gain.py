@@ -33,6 +33,7 @@ from ptp_symbolic.numeric.identify.constants import (
     TUNING,
 )
 from ptp_symbolic.numeric.identify.coordinates import to_search
+from ptp_symbolic.numeric.identify.evidence import recorded
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.intervals import chance_of, project_out
 from ptp_symbolic.numeric.identify.noise import innovations, prediction_error_filter
@@ -73,6 +74,7 @@ class Gain:
         return self.chance < FALSE_ALARM / max(tests, 1)
 
 
+@recorded(Gain)
 def gain(larger: Trial, smaller: Trial) -> Gain:
     """The predictive gain of `larger` over `smaller`, both fitted to the same runs; none where a
     derivative of either is no number, for its motion multiplies any error without bounds.
@@ -83,6 +85,7 @@ def gain(larger: Trial, smaller: Trial) -> Gain:
     return _gain(larger.fit.runs, [_projected(t.fit) for t in (larger, smaller)])
 
 
+@recorded(Gain)
 def gain_in_innovations(larger: Trial, smaller: Trial) -> Gain:
     """The same where what `larger` leaves is coloured: in its innovations, each model one step of
     generalized least squares from its fit.
@@ -168,6 +171,7 @@ def compared(larger: FloatArray, smaller: FloatArray) -> Gain:
     return Gain(share, lower, upper, share / max(error, NOTHING), b - 1, float(by_rank))
 
 
+@recorded()
 def p_value(trial: Trial, zero: Mapping[str, float]) -> float:
     """Probability that parameters this far from `zero`, or further, are found where they are zero.
 

@@ -44,6 +44,7 @@ from ptp_symbolic.numeric.diagnose.trial import (
 )
 from ptp_symbolic.numeric.identify.constants import MATERIAL, MOST, REACH
 from ptp_symbolic.numeric.identify.coordinates import to_search, to_values
+from ptp_symbolic.numeric.identify.evidence import recorded
 from ptp_symbolic.numeric.identify.fit import Fit
 
 FloatArray = NDArray[np.float64]
@@ -210,6 +211,26 @@ def look_alikes(task: Task, trial: Trial, fit: Fit, member: Candidate) -> list[S
     """Candidates whose response has a canonical correlation above 1 - MATERIAL with the effect of
     `member` at `fit`, best first.
     """
+    full = {c.key: c for c in sorted(task.candidates, key=lambda c: len(c.free))}
+    wanted = [c for c in full.values() if c.key not in trial.keys]
+    by_key = {c.key: c for c in reversed(task.candidates)}
+    brings = [by_key[key] for c in wanted for key in c.brings if key in by_key]
+    found = _look_alikes(task, trial, fit, member, wanted, brings)
+    return [Similarity(wanted[k], correlation, values) for k, correlation, values in found]
+
+
+@recorded()
+def _look_alikes(
+    task: Task,
+    trial: Trial,
+    fit: Fit,
+    member: Candidate,
+    wanted: Sequence[Candidate],
+    brings: Sequence[Candidate],
+) -> list[tuple[int, float, dict[str, float]]]:
+    """By number in `wanted`, what `look_alikes` finds of them; `brings` are all candidates that
+    they bring along.
+    """
     residual = stacked_residual(fit)
     table = stacked_jacobian(fit)
     own = [k for k, f in enumerate(fit.free) if f.name in member.parameters]
@@ -222,12 +243,14 @@ def look_alikes(task: Task, trial: Trial, fit: Fit, member: Candidate) -> list[S
         return []
     off = {name: member.vanishing[f.name] for f in member.defining for name in f.names}
     base = trial.values | off
-    full = {c.key: c for c in sorted(task.candidates, key=lambda c: len(c.free))}
-    wanted = [(c, shape) for c in full.values() if c.key not in trial.keys for shape in c.shapes]
+    every = [(k, shape) for k, c in enumerate(wanted) for shape in c.shapes]
     most = REACH * float(np.linalg.norm(effect))
 
-    def compare(pair: tuple[Candidate, Mapping[str, float]]) -> Similarity | None:
-        candidate, shape = pair
+    def compare(
+        pair: tuple[int, Mapping[str, float]],
+    ) -> tuple[int, float, dict[str, float]] | None:
+        number, shape = pair
+        candidate = wanted[number]
         found = response_columns(task, trial, candidate, shape, most)
         if found is None:
             return None
@@ -235,12 +258,12 @@ def look_alikes(task: Task, trial: Trial, fit: Fit, member: Candidate) -> list[S
         if correlation < 1.0 - MATERIAL:
             return None
         values = _instead(base, fit, others, residual - effect, away, found)
-        return Similarity(candidate, correlation, values | dict(found.base))
+        return number, correlation, values | dict(found.base)
 
-    best: dict[str, Similarity] = {}
-    jobs = [s for s in task.executor.map(compare, wanted) if s is not None]
-    for s in sorted(jobs, key=lambda s: -s.correlation):
-        best.setdefault(s.candidate.key, s)
+    best: dict[int, tuple[int, float, dict[str, float]]] = {}
+    jobs = [s for s in task.executor.map(compare, every) if s is not None]
+    for s in sorted(jobs, key=lambda s: -s[1]):
+        best.setdefault(s[0], s)
     return list(best.values())
 
 

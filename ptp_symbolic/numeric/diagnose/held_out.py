@@ -14,7 +14,6 @@ from ptp_symbolic.numeric.diagnose.trial import (
     SHARP,
     Task,
     Trial,
-    mean_squares,
     tolerance_for,
 )
 from ptp_symbolic.numeric.identify.blocks import block_length, huber_root
@@ -30,6 +29,8 @@ from ptp_symbolic.numeric.identify.constants import (
     TUNING,
     UNALIKE,
 )
+from ptp_symbolic.numeric.identify.evaluate import mean_squares
+from ptp_symbolic.numeric.identify.evidence import recorded
 from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
 from ptp_symbolic.numeric.identify.intervals import (
     closest_in_ball,
@@ -65,6 +66,7 @@ def is_borne_out(held_out: Gain, quiet: bool, unusual: bool, material: float) ->
     return held_out.share >= material and (not unusual or held_out.is_clear(1))
 
 
+@recorded()
 def left_by_best_values(
     after: Fit, estimated: Fit, level: FloatArray, executor: Executor | None = None
 ) -> FloatArray:

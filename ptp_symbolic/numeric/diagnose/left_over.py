@@ -14,7 +14,6 @@ from ptp_symbolic.numeric.diagnose.trial import (
     Trial,
     continued,
     fitted,
-    mean_squares,
     simulated,
     tolerance_for,
 )
@@ -29,7 +28,14 @@ from ptp_symbolic.numeric.identify.constants import (
     TEST_ALARM,
     TUNING,
 )
-from ptp_symbolic.numeric.identify.evaluate import Evaluation, evaluate, simulated_signals
+from ptp_symbolic.numeric.identify.evaluate import (
+    Evaluation,
+    Tolerance,
+    evaluate,
+    mean_squares,
+    simulated_signals,
+)
+from ptp_symbolic.numeric.identify.evidence import recorded
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.replays import replayed_squares
 from ptp_symbolic.numeric.identify.robust_loss import (
@@ -41,6 +47,7 @@ from ptp_symbolic.numeric.identify.robust_loss import (
 from ptp_symbolic.numeric.identify.run import Run, sizes
 from ptp_symbolic.numeric.identify.sample_averages import samples_within, thinned
 from ptp_symbolic.numeric.identify.simulations import POLISH
+from ptp_symbolic.numeric.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
 
@@ -77,6 +84,7 @@ def _robust_mean(squares: FloatArray, size: FloatArray) -> FloatArray:
     return np.asarray(size @ bounded / size.sum())
 
 
+@recorded(Carried)
 def carried_noise(task: Task, fit: Fit) -> Carried:
     """What the noise of the inputs leaves, by the model of `fit`.
 
@@ -133,25 +141,33 @@ def with_fewer_samples(task: Task, values: Mapping[str, float]) -> Task:
     once shows the difference, and keeps its samples.
     """
     p, tolerance = task.model.parameter_vector(dict(values)), tolerance_for(task, ROUGH)
+
+    def fewer(run: Run) -> Run:
+        every = _samples_apart(task.model, run, p, tolerance)
+        return run if every == 1 else thinned(run, every)
+
+    return replace(task, train=tuple(task.executor.map(fewer, task.every_sample)))
+
+
+@recorded()
+def _samples_apart(model: Model, run: Run, p: FloatArray, tolerance: Tolerance) -> int:
+    """Every which sample of a run is enough for `with_fewer_samples`, at p [np]."""
     none = np.zeros(0, dtype=np.int64)
 
     def of(run: Run) -> Evaluation:
-        return evaluate(task.model, run, p, run.guess, none, False, tolerance)
+        return evaluate(model, run, p, run.guess, none, False, tolerance)
 
-    def fewer(run: Run) -> Run:
-        every = samples_within(run, SEARCH_PERIOD)
-        if every == 1 or (whole := of(run)).failed:
-            return run
-        while every > 1:
-            part = thinned(run, every)
-            e = of(part)
-            change = simulated_signals(part, e) - simulated_signals(run, whole)[::every]
-            if not e.failed and np.all(np.mean((change * run.weight) ** 2, axis=0) <= LITTLE):
-                return part
-            every //= 2
-        return run
-
-    return replace(task, train=tuple(task.executor.map(fewer, task.every_sample)))
+    every = samples_within(run, SEARCH_PERIOD)
+    if every == 1 or (whole := of(run)).failed:
+        return 1
+    while every > 1:
+        part = thinned(run, every)
+        e = of(part)
+        change = simulated_signals(part, e) - simulated_signals(run, whole)[::every]
+        if not e.failed and np.all(np.mean((change * run.weight) ** 2, axis=0) <= LITTLE):
+            return every
+        every //= 2
+    return 1
 
 
 def is_thinned(task: Task, fit: Fit) -> bool:

@@ -38,6 +38,7 @@ from ptp_symbolic.numeric.identify.constants import (
     WIDE_STEP,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
+from ptp_symbolic.numeric.identify.evidence import recorded
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.run_starts import has_linked
 from ptp_symbolic.numeric.identify.simulations import POLISH
@@ -226,6 +227,7 @@ def without_run(task: Task, trial: Trial, name: str) -> Fit:
     return fitted(part, trial.candidates, trial.values, z, POLISH, executor=run).fit
 
 
+@recorded()
 def expected_gain(trial: Trial, vanishing: Mapping[str, float]) -> float:
     """The share of the squared residual with the parameters in `vanishing` at their values there
     that those at the fit take away, by linear prediction from the Jacobian.

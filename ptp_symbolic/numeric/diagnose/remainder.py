@@ -30,6 +30,7 @@ from ptp_symbolic.numeric.identify.constants import (
     TEST_ALARM,
 )
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace, RowMotion, row_motion
+from ptp_symbolic.numeric.identify.evidence import recorded
 from ptp_symbolic.numeric.identify.fit import Fit
 
 FloatArray = NDArray[np.float64]
@@ -45,6 +46,7 @@ INDEPENDENT = (
 )
 
 
+@recorded()
 def residual_tests(fit: Fit, inputs: tuple[str, ...]) -> list[dict[str, Any]]:
     """Per measured signal: whiteness of its residual (autocorrelation), and independence of each of
     the `inputs` (cross-correlation).

@@ -5,8 +5,9 @@ they vanish: their response to a finite amount, the free parameters following, t
 could gain, and where it should start.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +27,8 @@ from ptp_symbolic.numeric.identify.constants import (
     SAME,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, to_search
+from ptp_symbolic.numeric.identify.evidence import recorded
+from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.simulations import all_values
 
 FloatArray = NDArray[np.float64]
@@ -81,31 +84,64 @@ def responses(task: Task, trial: Trial, candidates: Sequence[Candidate]) -> list
     for c in candidates:
         if c.key not in have:
             wanted.setdefault(c.key, []).append(c)
-    fit = trial.fit
-    residual = stacked_residual(fit)
-    declared = stacked_jacobian(fit)
-    most = REACH * float(np.linalg.norm(residual))
-
-    def respond(
-        candidate: Candidate, shape: Mapping[str, float], seen: SeenColumns
-    ) -> Response | None:
-        found = response_columns(task, trial, candidate, shape, most, seen)
-        if found is None:
-            return None
-        amounts, left = least(residual, declared, found)
-        nf = declared.shape[1]
-        phi = to_search(fit.free, fit.values) + amounts[:nf]
-        values = {**trial.values, **all_values(fit.free, phi), **found.values(amounts[nf:])}
-        whole = with_what_it_brings(trial.candidates, candidate, task.candidates)
-        return Response(candidate, left, Proposal(whole, values), shape)
+    at = _Linear(trial.fit)
 
     def best_form(forms: Sequence[Candidate]) -> Response | None:
-        seen: SeenColumns = {}
-        found = [respond(c, shape, seen) for c in forms for shape in c.shapes]
-        return min((r for r in found if r is not None), key=lambda r: r.left, default=None)
+        wholes = [with_what_it_brings(trial.candidates, c, task.candidates) for c in forms]
+        found = _best_form(task, trial, forms, wholes, lambda: at)
+        if found is None:
+            return None
+        number, shape, left, moved = found
+        candidate = forms[number]
+        proposal = Proposal(wholes[number], {**trial.values, **moved})
+        return Response(candidate, left, proposal, candidate.shapes[shape])
 
     jobs = task.executor.map(best_form, wanted.values())
     return sorted((r for r in jobs if r is not None), key=lambda r: r.left)
+
+
+@dataclass(frozen=True, eq=False)
+class _Linear:
+    """Residual [n] and Jacobian [n, nf] of a fit, projected off the starts of its runs."""
+
+    fit: Fit
+
+    @cached_property
+    def residual(self) -> FloatArray:
+        return stacked_residual(self.fit)
+
+    @cached_property
+    def jacobian(self) -> FloatArray:
+        return stacked_jacobian(self.fit)
+
+
+@recorded()
+def _best_form(
+    task: Task,
+    trial: Trial,
+    forms: Sequence[Candidate],
+    wholes: Sequence[Sequence[Candidate]],
+    linear: Callable[[], _Linear],
+) -> tuple[int, int, float, dict[str, float]] | None:
+    """The number of the form of a candidate that promises most and of its shape, what is left by
+    it, and the values that it changes; `wholes` are the sets that the forms make of the trial's.
+    """
+    fit, at, seen = trial.fit, linear(), SeenColumns()
+    most = REACH * float(np.linalg.norm(at.residual))
+    best = None
+    for number, candidate in enumerate(forms):
+        for place, shape in enumerate(candidate.shapes):
+            found = response_columns(task, trial, candidate, shape, most, seen)
+            if found is None:
+                continue
+            amounts, left = least(at.residual, at.jacobian, found)
+            if best is not None and left >= best[2]:
+                continue
+            nf = at.jacobian.shape[1]
+            phi = to_search(fit.free, fit.values) + amounts[:nf]
+            moved = {**all_values(fit.free, phi), **found.values(amounts[nf:])}
+            best = number, place, left, moved
+    return best
 
 
 def response_columns(

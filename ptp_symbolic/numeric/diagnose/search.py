@@ -59,6 +59,7 @@ from ptp_symbolic.numeric.identify.constants import (
     SCREENED,
 )
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace, row_motion
+from ptp_symbolic.numeric.identify.evidence import recorded
 from ptp_symbolic.numeric.identify.work import Allowance
 
 FloatArray = NDArray[np.float64]
@@ -99,6 +100,23 @@ def _line(
     if not rows / ROWS_PER_WINDOW < apart <= SCANNED:
         return None
     task.progress(f"simulating {candidate.key} at all frequencies, {apart} of which are resolved")
+    best = _strongest(task, trial, candidate, span, lowest, highest, task.material)
+    return None if best is None else (best, 0.9 * lowest, apart)
+
+
+@recorded()
+def _strongest(
+    task: Task,
+    trial: Trial,
+    candidate: Candidate,
+    span: float,
+    lowest: float,
+    highest: float,
+    material: float,
+) -> float | None:
+    """The frequency of the strongest line of `_line`, from the lowest to the highest, where it
+    takes away a `material` share.
+    """
     away = stacked_jacobian(trial.fit)
     residual = projected_off(stacked_residual(trial.fit)[:, None], away)[:, 0]
 
@@ -112,9 +130,9 @@ def _line(
     close = np.clip(best + CYCLES_APART / span * np.array([-1.0, 0.0, 1.0]), lowest, highest)
     shares = np.array(list(task.executor.map(left, close)))
     taken, by_others = 1.0 - shares.min(), 1.0 - others.min(initial=1.0)
-    if taken < task.material or by_others > MOST * taken:
+    if taken < material or by_others > MOST * taken:
         return None
-    return float(close[int(np.argmin(shares))]), 0.9 * lowest, apart
+    return float(close[int(np.argmin(shares))])
 
 
 def _place(space: EquationSpace, trial: Trial, candidate: Candidate) -> tuple[float, float, int]:

@@ -1,7 +1,7 @@
 """Where refits by simulation begin: at what the rows or the outputs ask for, and beside it."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import replace
 
 import numpy as np
@@ -22,10 +22,11 @@ from ptp_symbolic.numeric.diagnose.trial import (
     misfits,
     ranked,
     side_by_side,
-    simulated,
+    simulated_at,
 )
 from ptp_symbolic.numeric.identify.constants import ITERATIONS, MOST, TRIED, WIDE_STEP
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
+from ptp_symbolic.numeric.identify.evidence import recorded
 from ptp_symbolic.numeric.identify.fit import Fit
 
 
@@ -89,10 +90,15 @@ def taken_over(task: Task, kept: Sequence[Candidate], trial: Trial) -> list[Tria
     others = {f.name for f in all_free(task, kept, values)}
     linear = [f for c in dropped for f in c.defining if not c.is_limit(f)]
     vanishing = {f.name: off[f.name] for f in linear}
-    table = stacked_jacobian(trial.fit)
-    taken = made_up_for(trial.fit, vanishing, others, table) | off
+    taken = _taken(trial.fit, vanishing, others) | off
     starts = [values] if taken == values else [values, taken]
     return side_by_side(lambda start: _begun(task, kept, start, trial.fit), starts)
+
+
+@recorded()
+def _taken(fit: Fit, vanishing: Mapping[str, float], others: Set[str]) -> dict[str, float]:
+    """See `made_up_for`."""
+    return made_up_for(fit, vanishing, others, stacked_jacobian(fit))
 
 
 def in_place(
@@ -156,7 +162,7 @@ def _valleys(task: Task, trial: Trial, free: FreeParameter) -> list[Trial]:
 def _moved(task: Task, trial: Trial, free: FreeParameter, amount: float) -> Trial:
     """The trial with one parameter at another amount, not fitted, and without new Jacobians."""
     values = trial.values | dict.fromkeys(free.names, amount)
-    evaluations = tuple(simulated(task, trial.fit, values, task.executor))
+    evaluations = simulated_at(task, trial.fit, values)
     return replace(trial, fit=replace(trial.fit, values=values, evaluations=evaluations))
 
 

@@ -15,7 +15,6 @@ from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
     fitted,
-    mean_squares,
     misfits,
     ranked,
     simulated,
@@ -26,6 +25,9 @@ from ptp_symbolic.numeric.identify.constants import (
     CYCLES,
     SCREENED,
 )
+from ptp_symbolic.numeric.identify.evaluate import mean_squares
+from ptp_symbolic.numeric.identify.evidence import recorded
+from ptp_symbolic.numeric.identify.fit import Fit
 
 FloatArray = NDArray[np.float64]
 
@@ -144,11 +146,17 @@ def _may_be_all(part: Task, alone: Trial, amounts: Mapping[str, float], most: Fl
     """Whether a candidate at some `amounts` changes some windows, and those that it leaves as they
     are hold no more than may be noise, at `most` [ny]: else they lack something besides.
     """
+    changed = _changed(part, alone.fit, amounts)
     fit = alone.fit
-    changed = [
-        e.failed is not None or not np.array_equal(e.residual, before.residual)
-        for e, before in zip(simulated(part, fit, amounts, None), fit.evaluations, strict=True)
-    ]
     left = mean_squares(fit.evaluations, fit.runs)[np.logical_not(changed)]
     usual = np.median(left, axis=0) if len(left) else np.zeros(left.shape[1])
     return any(changed) and bool(np.all(np.sqrt(usual) <= most))
+
+
+@recorded()
+def _changed(part: Task, fit: Fit, amounts: Mapping[str, float]) -> list[bool]:
+    """Which windows of a fit a candidate changes at some `amounts`."""
+    return [
+        e.failed is not None or not np.array_equal(e.residual, before.residual)
+        for e, before in zip(simulated(part, fit, amounts, None), fit.evaluations, strict=True)
+    ]

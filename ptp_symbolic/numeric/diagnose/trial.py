@@ -6,9 +6,9 @@ Fits side by side, in threads of their own that share out their simulations.
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import Executor, ThreadPoolExecutor
+from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,12 +24,20 @@ from ptp_symbolic.numeric.identify.constants import (
     WIDE_STEP,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
-from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evaluate
+from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evaluate, mean_squares
+from ptp_symbolic.numeric.identify.evidence import (
+    Deferred,
+    in_turn,
+    is_recording,
+    key_of,
+    simulates,
+    stored,
+)
 from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
 from ptp_symbolic.numeric.identify.robust_loss import huber_loss, weighted_median
 from ptp_symbolic.numeric.identify.run import Run, sizes
 from ptp_symbolic.numeric.identify.simulations import Effort
-from ptp_symbolic.numeric.identify.work import Allowance
+from ptp_symbolic.numeric.identify.work import Allowance, Threads
 from ptp_symbolic.numeric.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
@@ -51,9 +59,9 @@ def side_by_side(work: Callable[[Item], Result], items: Sequence[Item]) -> list[
     between two of its own, so that the last of three fits for two cores keeps both at work. One
     piece more than cores is enough for that.
     """
-    if len(items) <= 1:
-        return [work(item) for item in items]
-    with ThreadPoolExecutor(min(len(items), 1 + usable_cores())) as threads:
+    if len(items) <= 1 or not simulates():
+        return in_turn(work, items)
+    with Threads(min(len(items), 1 + usable_cores())) as threads:
         return list(threads.map(work, items))
 
 
@@ -96,6 +104,13 @@ class Task:
     material: float = MATERIAL
     white: bool = False
     allowance: Allowance = field(default_factory=Allowance)
+
+    @property
+    def evidence_parts(self) -> tuple[Any, ...]:
+        """What recorded evaluations of a task depend on, unless they are given more."""
+        runs = self.train, self.every_sample
+        noise = self.input_noise, self.declared_noise
+        return self.model, runs, self.fixed, noise, self.resolution, self.robust_below
 
     @property
     def is_over(self) -> bool:
@@ -242,14 +257,19 @@ def simulated(
     return list(run(one, zip(fit.runs, fit.z, strict=True)))
 
 
-def mean_squares(evaluations: Sequence[Evaluation], runs: Sequence[Run]) -> FloatArray:
-    """Mean square [runs, ny] of the weighted residuals; infinite where a simulation failed."""
-    rows = []
-    for e, run in zip(evaluations, runs, strict=True):
-        table = e.residual.reshape(run.measured.shape)
-        failed = e.failed is not None or not np.all(np.isfinite(table))
-        rows.append(np.full(len(run.signals), np.inf) if failed else np.mean(table**2, axis=0))
-    return np.array(rows)
+def simulated_at(task: Task, fit: Fit, values: Mapping[str, float]) -> Sequence[Evaluation]:
+    """See `simulated`: of which the mean squares are recorded."""
+
+    def made() -> list[Evaluation]:
+        return simulated(task, fit, values, task.executor)
+
+    if not is_recording():
+        return made()
+    key = key_of("simulated", task, fit, values)
+    found = stored(key, made, lambda every: mean_squares(every, fit.runs))
+    if found.made is None:
+        return Deferred(key, len(fit.runs), made, found.light)
+    return Deferred(key, len(fit.runs), None, found.light, found.made)
 
 
 def misfits(trials: Sequence[Trial]) -> list[float]:

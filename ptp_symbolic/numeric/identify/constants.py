@@ -84,6 +84,7 @@ SAME = 1e-3  # 1; relative difference of directions or values that count as one;
 NOTHING = 1e-10  # 1; share of a sum of 1e5 squares, above its rounding of 2e-11; derived
 ROUNDS = 40  # 1; at most, until a loop has converged; halvings: to 1e-12; derived
 WITH_TANGENTS = 3  # 1; cost of a sample with its sensitivities over one without; derived
+KEY_BYTES = 16  # bytes; of a key: any two of 1e6 evaluations are alike once in 1e27; derived
 
 # Sequences
 LENGTHS = (8.0, 4.0, 2.0, 1.0, 0.5)  # s; lengths of windows that are tried, by halves; scaled

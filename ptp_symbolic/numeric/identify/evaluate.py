@@ -7,6 +7,7 @@ of fast states (Kokotovic, Khalil and O'Reilly, 1986, 1.2): from none, a current
 within the window, and a joint that slides would start a little behind.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.along_motion import NEXT_TO_NONE
 from ptp_symbolic.numeric.identify.constants import FORGOTTEN, ROUNDING, ROUNDS, SAME
+from ptp_symbolic.numeric.identify.evidence import Deferred, refuse_unstored
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.runtime.element_layout import contact_guards
 from ptp_symbolic.numeric.runtime.model import Model
@@ -123,6 +125,18 @@ class Evaluation:
     by_start: FloatArray
     failed: str | None = None
     end: FloatArray | None = None
+
+
+def mean_squares(evaluations: Sequence[Evaluation], runs: Sequence[Run]) -> FloatArray:
+    """Mean square [runs, ny] of the weighted residuals; infinite where a simulation failed."""
+    if isinstance(evaluations, Deferred) and evaluations.squares is not None:
+        return np.array(evaluations.squares)
+    rows = []
+    for e, run in zip(evaluations, runs, strict=True):
+        table = e.residual.reshape(run.measured.shape)
+        failed = e.failed is not None or not np.all(np.isfinite(table))
+        rows.append(np.full(len(run.signals), np.inf) if failed else np.mean(table**2, axis=0))
+    return np.array(rows)
 
 
 def simulated_signals(run: Run, evaluation: Evaluation) -> FloatArray:
@@ -244,6 +258,7 @@ def evaluate(
     the parameters `columns` [nc] and by z. A simulation that fails has zero residuals and says so
     in `failed`; raises InputError as `integrate` does.
     """
+    refuse_unstored()
     run.work.add(len(run.time), tangents)
     columns = columns if tangents else columns[:0]
     x, s = start_state(model, run, p, z, columns)

@@ -1,15 +1,17 @@
 """Fit the free parameters of a model to several runs at once."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.constants import NOTHING
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, slopes, to_search
-from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance
+from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, mean_squares
+from ptp_symbolic.numeric.identify.evidence import Deferred, is_recording, key_of, stored
 from ptp_symbolic.numeric.identify.least_squares import Shift, minimise
 from ptp_symbolic.numeric.identify.requirements import nearest_possible
 from ptp_symbolic.numeric.identify.run import Run
@@ -41,11 +43,11 @@ class Fit:
     values: Mapping[str, float]
     z: tuple[FloatArray, ...]
     cost: float
-    evaluations: tuple[Evaluation, ...]
+    evaluations: Sequence[Evaluation]
     failed: str | None = None
     tolerance: Tolerance = DEFAULT_TOLERANCE
     misleading: tuple[Shift, ...] | None = None
-    shaken: tuple[FloatArray, ...] = ()
+    shaken: Sequence[FloatArray] = ()
 
     def rms_counts(self) -> float:
         """Root mean square of the residual of all encoder signals, in counts (see `run_counts`)."""
@@ -85,10 +87,99 @@ def fit_parameters(
     Raises InputError for `fixed` values out of bounds.
     """
     effort = effort or Effort()
+
+    def ended() -> _End:
+        return _ended(model, runs, free, fixed, z, effort, executor, misleading, earlier)
+
+    if not is_recording():
+        return ended().fit
+    given = model, tuple(runs), tuple(free), fixed, z, effort, misleading
+    key = key_of("fit", *given, None if earlier is None else earlier.evaluations)
+    found = stored(key, ended, _End.light)
+    kept, make = found.light, None
+    if found.made is not None:
+        fit = found.made.fit
+    else:
+        fit, make = _of_light(kept, model, runs, free, fixed, effort, executor, earlier)
+    evaluations = Deferred(key, len(runs), make, kept["squares"], fit.evaluations)
+    return replace(fit, evaluations=evaluations)
+
+
+@dataclass(frozen=True, eq=False)
+class _End:
+    """A fit, the search coordinates phi [nf] where it ended, and whether it is `unmoved`: it has
+    the evaluations of the earlier fit from whose end it began.
+    """
+
+    fit: Fit
+    phi: FloatArray
+    unmoved: bool = False
+
+    def light(self) -> dict[str, Any]:
+        """What is recorded of it: no evaluations but their mean squares."""
+        fit = self.fit
+        return {
+            "phi": self.phi,
+            "unmoved": self.unmoved,
+            "z": fit.z,
+            "cost": fit.cost,
+            "failed": fit.failed,
+            "misleading": fit.misleading,
+            "squares": mean_squares(fit.evaluations, fit.runs),
+        }
+
+
+def _of_light(
+    kept: Mapping[str, Any],
+    model: Model,
+    runs: Sequence[Run],
+    free: Sequence[FreeParameter],
+    fixed: Mapping[str, float],
+    effort: Effort,
+    executor: Executor | None,
+    earlier: Fit | None,
+) -> tuple[Fit, Callable[[], Sequence[Evaluation]]]:
+    """The fit of which `_End.light` was recorded, and what makes its evaluations."""
+    values = {**fixed, **all_values(free, kept["phi"])} if free else dict(fixed)
+
+    def evaluations() -> Sequence[Evaluation]:
+        if kept["unmoved"] and earlier is not None:
+            return _by_coordinates(earlier, free)
+        base = fixed if free else values
+        simulations = simulations_of(model, runs, free, base, effort, executor)
+        return simulations.evaluate(kept["phi"], kept["z"], True)
+
+    fit = Fit(
+        model,
+        tuple(runs),
+        tuple(free),
+        values,
+        kept["z"],
+        kept["cost"],
+        (),
+        kept["failed"],
+        effort.tolerance,
+        kept["misleading"],
+    )
+    return fit, evaluations
+
+
+def _ended(
+    model: Model,
+    runs: Sequence[Run],
+    free: Sequence[FreeParameter],
+    fixed: Mapping[str, float],
+    z: Sequence[FloatArray] | None,
+    effort: Effort,
+    executor: Executor | None,
+    misleading: Sequence[Shift] | None,
+    earlier: Fit | None,
+) -> _End:
+    """See `fit_parameters`."""
     if not free:
         known = [[]] * len(runs) if z is None else [[start] for start in z]
         starts = fitted_starts(model, runs, fixed, known, effort, executor)
-        return Fit(
+        fit = Fit(
             model,
             tuple(runs),
             (),
@@ -99,6 +190,7 @@ def fit_parameters(
             next((s.failed for s in starts if s.failed), None),
             effort.tolerance,
         )
+        return _End(fit, np.zeros(0))
     simulations = simulations_of(model, runs, free, fixed, effort, executor)
     problem = problem_of(simulations, effort)
     if problem.refine is not None and misleading is not None:
@@ -115,7 +207,7 @@ def fit_parameters(
     best = minimise(problem, phi, z, effort.iterations, effort.gain, effort.rejections, begun)
     values = {**fixed, **all_values(free, best.phi)}
     chosen = None if problem.refine is None else problem.refine.chosen
-    return Fit(
+    fit = Fit(
         model,
         tuple(runs),
         tuple(free),
@@ -127,6 +219,7 @@ def fit_parameters(
         effort.tolerance,
         None if chosen is None else tuple(chosen),
     )
+    return _End(fit, best.phi, begun is not None and best.evaluations[0] is begun[0])
 
 
 def _ends_at(

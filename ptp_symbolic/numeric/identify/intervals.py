@@ -47,6 +47,7 @@ from ptp_symbolic.numeric.identify.constants import (
     TEST_ALARM,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, slopes, to_search, wrapped
+from ptp_symbolic.numeric.identify.evidence import recorded
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.run import by_log
 
@@ -132,6 +133,7 @@ def _sums(columns: FloatArray, parts: IntArray) -> FloatArray:
     return np.array([np.bincount(parts, column) for column in columns.T]).T
 
 
+@recorded()
 def joint_region(fit: Fit) -> FloatArray:
     """The ellipsoid [nf, seen] that holds the true search coordinates of a finished fit with a
     chance of 99 %: the fitted ones plus this matrix times any vector of length one at most
@@ -190,6 +192,7 @@ class Estimate:
     has_interval: bool = True
 
 
+@recorded(Estimate)
 def estimates(fit: Fit) -> tuple[Estimate, ...]:
     """Values of the free parameters of `fit` with 95 % confidence intervals (Student's t), of the
     mean over logs where these differ clearly.
@@ -215,6 +218,7 @@ def estimates(fit: Fit) -> tuple[Estimate, ...]:
     return tuple(result)
 
 
+@recorded()
 def reaches(fit: Fit) -> FloatArray:
     """Half widths [nf] of the 95 % intervals in search coordinates, infinite where the data see a
     parameter only in combination with others, or not at all.
@@ -247,6 +251,7 @@ def _interval(
     return float(ends[0]), float(ends[1]), width
 
 
+@recorded()
 def chance_of_zero(fit: Fit, zero: Mapping[str, float], shape: Collection[str] = ()) -> float:
     """Probability that the parameters in `zero` are found as far from their values there as they
     are, or further, where the truth is there (see `chance_of`), with the covariance of the

@@ -22,7 +22,8 @@ from ptp_symbolic.numeric.identify.constants import (
     STEP,
 )
 from ptp_symbolic.numeric.identify.coordinates import to_search
-from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evaluate
+from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evaluate, mean_squares
+from ptp_symbolic.numeric.identify.evidence import derived, is_recording
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.intervals import project_out, reaches
 from ptp_symbolic.numeric.identify.noise import white_noise
@@ -56,6 +57,18 @@ def with_finite_differences(
     """
     if not fit.free or fit.failed:
         return fit
+    if not is_recording():
+        return _with_finite_differences(fit, executor, reach)
+
+    def changed() -> Sequence[Evaluation]:
+        return _with_finite_differences(fit, executor, reach).evaluations
+
+    squares = mean_squares(fit.evaluations, fit.runs)
+    return replace(fit, evaluations=derived("finite differences", (fit, reach), changed, squares))
+
+
+def _with_finite_differences(fit: Fit, executor: Executor | None, reach: FloatArray | None) -> Fit:
+    """See `with_finite_differences`, of a fit that has free parameters and has not failed."""
     effort = Effort(tolerance=fit.tolerance, secants=STEP)
     simulations = simulations_of(fit.model, fit.runs, fit.free, fit.values, effort, executor)
     problem = problem_of(simulations, effort)
@@ -196,6 +209,22 @@ def with_input_noise(
     """
     if not fit.free or fit.failed:
         return fit
+
+    def changed() -> Sequence[FloatArray]:
+        return _shaken(fit, declared_noise, executor)
+
+    shaken: Sequence[FloatArray]
+    if is_recording():
+        shaken = derived("input noise", (fit, declared_noise), changed)
+    else:
+        shaken = changed()
+    return replace(fit, shaken=shaken) if len(shaken) else fit
+
+
+def _shaken(
+    fit: Fit, declared_noise: Sequence[float | None], executor: Executor | None
+) -> Sequence[FloatArray]:
+    """The `shaken` of `with_input_noise`."""
     p = fit.model.parameter_vector(dict(fit.values))
     replays = -(-REPLAYS // len(fit.runs))
 
@@ -211,8 +240,7 @@ def with_input_noise(
     every = list((executor.map if executor else map)(changes, range(len(fit.runs))))
     square = np.concatenate([np.mean(c**2, axis=0) for c in every])
     if not square.size:
-        return fit
+        return ()
     size = np.concatenate([np.full(c.shape[1], float(len(c))) for c in every])
     usual = max(float(weighted_median(square[:, None], size)[0]), 1.0)
-    shaken = tuple(c * huber_root(np.mean(c**2, axis=0), usual) for c in every)
-    return replace(fit, shaken=shaken)
+    return tuple(c * huber_root(np.mean(c**2, axis=0), usual) for c in every)

@@ -11,8 +11,9 @@ Runs and windows together: which are of one log, and how long each is.
 
 import itertools
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -173,6 +174,11 @@ class Run:
     unknowns: tuple[StartUnknown, ...]
     before: FloatArray | None = None
     work: Work = field(default_factory=Work)
+
+    @property
+    def evidence_parts(self) -> tuple[Any, ...]:
+        """All that a simulation of it depends on, and what it is compared with."""
+        return tuple(getattr(self, f.name) for f in fields(self) if f.name != "work")
 
     @cached_property
     def stops(self) -> FloatArray:

@@ -23,6 +23,7 @@ from ptp_symbolic.numeric.identify.constants import (
     ROUGH,
 )
 from ptp_symbolic.numeric.identify.evaluate import Tolerance, start_state
+from ptp_symbolic.numeric.identify.evidence import recorded
 from ptp_symbolic.numeric.identify.gap_places import gears_in_place, residual_of, with_gap_places
 from ptp_symbolic.numeric.identify.least_squares import Optimum, Problem, cost_of, minimise
 from ptp_symbolic.numeric.identify.run import Run
@@ -32,6 +33,7 @@ from ptp_symbolic.numeric.runtime.model import Model
 FloatArray = NDArray[np.float64]
 
 
+@recorded()
 def starts_in_place(
     model: Model,
     runs: Sequence[Run],

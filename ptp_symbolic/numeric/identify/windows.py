@@ -29,6 +29,7 @@ from ptp_symbolic.numeric.identify.constants import (
     TUNING,
 )
 from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate, start_state
+from ptp_symbolic.numeric.identify.evidence import recorded
 from ptp_symbolic.numeric.identify.replays import input_noise, propagated_noise, replayed
 from ptp_symbolic.numeric.identify.run import WINDOW, Around, Run, with_start
 from ptp_symbolic.numeric.identify.sample_averages import thinned
@@ -38,6 +39,7 @@ from ptp_symbolic.numeric.simulation.signals.inputs import part_of_held
 FloatArray = NDArray[np.float64]
 
 
+@recorded()
 def window_length(
     model: Model,
     runs: Sequence[Run],
@@ -71,6 +73,7 @@ def _typical(grown: Sequence[tuple[FloatArray, FloatArray]], length: float) -> f
     return float(np.sqrt(np.median(inside))) if inside else np.inf
 
 
+@recorded()
 def multiplies_errors(model: Model, run: Run, p: FloatArray, z: FloatArray) -> bool:
     """True when a small error of a starting angle grows within the run until it is no MATERIAL
     share of what it has become, at p [np] from the start z [nz].
@@ -111,13 +114,28 @@ def cut_where_errors_grow(
     of the signals and may be most of the residual `left` [runs, ny], or in which a gear rattles:
     breakaways and bounces amplify any error until nothing can be predicted.
     """
-    carried = propagated_noise(model, runs, z, p, declared_noise, executor)
-    grows = np.any((carried > 1.0) & (left < TUNING * carried), axis=1)
-    grows |= list((executor.map if executor else map)(lambda run: _rattles(model, run, p), runs))
+    grows = _errors_grow(model, tuple(runs), tuple(z), left, p, declared_noise, executor)
     found: list[Run] = []
     for run, chaotic in zip(runs, grows, strict=True):
         found += split_run(model, run, SHORT) if chaotic else (run,)
     return tuple(found)
+
+
+@recorded()
+def _errors_grow(
+    model: Model,
+    runs: Sequence[Run],
+    z: Sequence[FloatArray],
+    left: FloatArray,
+    p: FloatArray,
+    declared_noise: Sequence[float | None],
+    executor: Executor | None,
+) -> list[bool]:
+    """Which runs `cut_where_errors_grow` cuts."""
+    carried = propagated_noise(model, runs, z, p, declared_noise, executor)
+    grows = np.any((carried > 1.0) & (left < TUNING * carried), axis=1)
+    grows |= list((executor.map if executor else map)(lambda run: _rattles(model, run, p), runs))
+    return [bool(one) for one in grows]
 
 
 def _rattles(model: Model, run: Run, p: FloatArray) -> bool:

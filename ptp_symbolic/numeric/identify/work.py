@@ -2,10 +2,17 @@
 
 import threading
 import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
+from contextvars import ContextVar, copy_context
 from dataclasses import dataclass, field, replace
 from math import inf
+from typing import Any, TypeVar
 
 from ptp_symbolic.numeric.identify.constants import WITH_TANGENTS
+
+Result = TypeVar("Result")
 
 
 @dataclass(eq=False)
@@ -15,10 +22,53 @@ class Work:
     samples: int = 0
     _lock: threading.Lock = field(default_factory=threading.Lock, repr=False)
 
-    def add(self, samples: int, tangents: bool) -> None:
-        """Count a run that was simulated."""
+    @property
+    def evidence_parts(self) -> tuple[()]:
+        """Nothing that is evaluated depends on it."""
+        return ()
+
+    def add(self, samples: int, tangents: bool = False) -> None:
+        """Count a run that was simulated, also in every `tallied` part that it belongs to."""
+        tallies = _TALLIES.get()
+        if tallies is None:
+            return
         with self._lock:
-            self.samples += samples * (WITH_TANGENTS if tangents else 1)
+            for work in (self, *tallies):
+                work.samples += samples * (WITH_TANGENTS if tangents else 1)
+
+
+# The parts of the work that are under way; None: what is simulated does not count.
+_TALLIES: ContextVar[tuple[Work, ...] | None] = ContextVar("tallies", default=())
+
+
+@contextmanager
+def tallied() -> Iterator[Work]:
+    """What is simulated meanwhile, in this thread and in `Threads` that work for it."""
+    own = Work()
+    outer = _TALLIES.get()
+    token = _TALLIES.set(None if outer is None else (*outer, own))
+    try:
+        yield own
+    finally:
+        _TALLIES.reset(token)
+
+
+@contextmanager
+def uncounted() -> Iterator[None]:
+    """What is simulated meanwhile does not count."""
+    token = _TALLIES.set(None)
+    try:
+        yield
+    finally:
+        _TALLIES.reset(token)
+
+
+class Threads(ThreadPoolExecutor):
+    """Threads in which each piece of work has the context of who asked for it."""
+
+    def submit(self, fn: Callable[..., Result], /, *args: Any, **kwargs: Any) -> "Future[Result]":
+        """Begin a piece of work."""
+        return super().submit(copy_context().run, fn, *args, **kwargs)
 
 
 @dataclass(frozen=True, eq=False)

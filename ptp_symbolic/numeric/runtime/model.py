@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 from types import ModuleType
 from typing import NamedTuple
 
@@ -89,6 +90,11 @@ class Model:
     module: ModuleType
     declared: tuple[str, str, Mapping[str, tuple[float, float, float]]] | None = None
     platform: Platform | None = field(default=None, compare=False, repr=False)
+
+    @cached_property
+    def evidence_parts(self) -> tuple[str, object]:
+        """What everything that is computed by it depends on: its text, and what is declared."""
+        return Path(str(self.module.__file__)).read_text("utf-8"), self.declared
 
     @cached_property
     def name(self) -> str:

@@ -1,0 +1,200 @@
+"""What each rule of the diagnosis is worth: the verdicts that change without it.
+
+The decisions are made again upon stored evidence, which takes a second or so each. A rule that is
+switched off may lead where nothing was evaluated: then its price is not known.
+"""
+
+import json
+import re
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+from ptp_symbolic.numeric.data import Log, read_split_logs
+from ptp_symbolic.numeric.diagnose import along_rows, search, structures
+from ptp_symbolic.numeric.diagnose.proposals import in_rows_of, propose
+from ptp_symbolic.numeric.diagnose.trial import Task
+from ptp_symbolic.numeric.identify.evidence import (
+    Entry,
+    Evidence,
+    NotStoredError,
+    key_of,
+    recording,
+)
+from ptp_symbolic.numeric.identify.work import Allowance
+from ptp_symbolic.platform import Platform, read_platform
+from ptp_symbolic.workflows import structure_choice, structure_fits
+from ptp_symbolic.workflows.diagnosis import SAMPLES
+from ptp_symbolic.workflows.preparation import material_of, model_of, task_for, workers
+from ptp_symbolic.workflows.provenance import provenance
+from ptp_symbolic.workflows.rules import RULES, Rule, switched_off
+from ptp_symbolic.workflows.stored_evidence import FILE, Header, read_evidence, written
+from ptp_symbolic.workflows.structure_choice import Logs, chosen_structure
+from tests.benchmark.score import score
+
+
+@dataclass(frozen=True)
+class Answer:
+    """A verdict with the effects that it names and those that these are confused with; `grade` is
+    its class where the truth is known; `missing` evaluations kept it from being reached.
+    """
+
+    verdict: str = ""
+    named: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    grade: str = ""
+    missing: int = 0
+
+    def __str__(self) -> str:
+        names = [" or ".join([key, *alike]) for key, alike in self.named]
+        return f"{self.verdict} ({', '.join(names) or 'no name'})"
+
+
+@dataclass(eq=False)
+class Case:
+    """Stored evidence with all that it rests on, to be decided upon again and again.
+
+    What rules have no part in is made once: models, runs, and the rows along the motion.
+    """
+
+    folder: Path
+    header: Header
+    entries: dict[str, Entry]
+    platform: Platform
+    train: tuple[Log, ...]
+    validate: tuple[Log, ...]
+    made: dict[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def read(cls, folder: Path) -> "Case":
+        """The evidence in a folder. Raises InputError where it, or its logs, cannot be read."""
+        path, header, entries = read_evidence(folder)
+        options = header.options
+        here = (folder / "truth.json").exists()
+        platform = read_platform(folder / "platform.toml" if here else options["platform"])
+        parts = {}
+        for part in ("train", "validate"):
+            files = [Path(name) for name in options[part]]
+            parts[part] = [folder / part / f.name for f in files] if here else files
+        logs = read_split_logs(parts["train"], parts["validate"], platform)
+        read = {part: (parts[part], own) for part, own in zip(parts, logs, strict=True)}
+        header.refuse_other(path, Header.of(platform, provenance(platform, read, None), options))
+        return cls(folder, header, entries, platform, *map(tuple, logs))
+
+    def answer(self, rule: Rule | None, *, simulate: bool) -> Answer:
+        """The verdict without a rule (None: with all of them)."""
+        evidence = Evidence(self.entries, simulates=simulate)
+        limit = self.header.options["effort"] * SAMPLES
+        allowance = Allowance(evidence.work, samples=limit)
+        memory = self._made_once() if not simulate else switched_off(None)
+        try:
+            with recording(evidence), memory, switched_off(rule), workers() as executor:
+                logs = Logs(self.train, self.validate, executor, lambda text: None, allowance)
+                verdict = chosen_structure(self.platform, logs).chosen.verdict
+        except NotStoredError as error:
+            return Answer(missing=max(len(error.missing), 1))
+        finally:
+            if evidence.fresh:
+                self.entries.update(evidence.fresh)
+                (self.folder / FILE).write_bytes(written(self.header, self.entries))
+        named = [(c, tuple(verdict.confusable[c.key])) for c in verdict.final.candidates]
+        added = [
+            {"effect": c.id, "axis": c.axis, "confusable_with": alike, "parameters": c.parameters}
+            for c, alike in named
+        ]
+        grade, truth = "", self.folder / "truth.json"
+        if truth.exists():
+            given = {"verdict": verdict.word, "added": added}
+            grade = score(json.loads(truth.read_text("utf-8")), given).answer
+        return Answer(verdict.word, tuple((c.key, alike) for c, alike in named), grade)
+
+    @contextmanager
+    def _made_once(self) -> Iterator[None]:
+        """Models, tasks and proposals from memory, where they were made before."""
+
+        def once(key: str, make: Callable[[], Any]) -> Any:
+            if key not in self.made:
+                self.made[key] = make()
+            return self.made[key]
+
+        def model(platform: Platform) -> Any:
+            return once(key_of("model", platform), lambda: model_of(platform))
+
+        def task(platform: Platform, own: Any, *rest: Any) -> Task:
+            *_, declared, executor, _progress, allowance = rest
+            key = key_of("task", platform, own, declared)
+            found = once(key, lambda: task_for(platform, own, *rest))
+            material = material_of(platform)
+            return replace(found, executor=executor, allowance=allowance, material=material)
+
+        def proposed(given: Task) -> Any:
+            parts = given.whole, given.free, given.candidates
+            return once(key_of("proposals", given, *parts), lambda: propose(given))
+
+        def in_rows(given: Task, space: Any, values: Any, beside: Any) -> Any:
+            parts = given.whole, given.free, given.candidates, space.half_width, values, beside
+            return once(key_of("rows", given, *parts), lambda: in_rows_of(given, space, *parts[4:]))
+
+        with (
+            patch.object(along_rows, "in_rows_of", in_rows),
+            patch.object(structure_choice, "model_of", model),
+            patch.object(structure_fits, "model_of", model),
+            patch.object(structure_choice, "task_for", task),
+            patch.object(structure_fits, "task_for", task),
+            patch.object(search, "propose", proposed),
+            patch.object(structures, "propose", proposed),
+        ):
+            yield
+
+
+@dataclass(frozen=True)
+class Change:
+    """What happens to a verdict without a rule."""
+
+    folder: Path
+    before: Answer
+    after: Answer
+
+    @property
+    def kind(self) -> str:
+        """A change for the better or the worse, where the truth is known, another, or none."""
+        if self.after.missing:
+            return "needs"
+        grades = self.before.grade, self.after.grade
+        if grades[0] != grades[1]:
+            return " -> ".join(grades)
+        return "none" if str(self.before) == str(self.after) else "other"
+
+
+def prices(folders: Sequence[Path], pattern: str, simulate: bool) -> Iterator[str]:
+    """A line for every rule whose name has the pattern, with the verdicts that change without it,
+    each on a line of its own; first the verdicts with all rules.
+    """
+    cases = [Case.read(folder) for folder in folders]
+    usual = []
+    for case in cases:
+        usual.append(case.answer(None, simulate=simulate))
+        grade = f"{usual[-1].grade or 'truth not given'}: "
+        what = f"needs {usual[-1].missing} evaluations" if usual[-1].missing else str(usual[-1])
+        yield f"{case.folder.name}: {grade}{what}"
+    for rule in RULES:
+        if not re.search(pattern, rule.name):
+            continue
+        changes = [
+            Change(case.folder, before, case.answer(rule, simulate=simulate))
+            for case, before in zip(cases, usual, strict=True)
+        ]
+        counts = Counter(change.kind for change in changes)
+        said = [f"{count} {kind}" for kind, count in sorted(counts.items()) if kind != "needs"]
+        missing = sum(change.after.missing for change in changes)
+        if missing:
+            said.append(
+                f"{counts['needs']} need evaluations that were not made, {missing} at first"
+            )
+        yield f"{rule.name}: {', '.join(said)}"
+        for change in changes:
+            if change.kind not in ("none", "needs"):
+                yield f"    {change.folder.name}: {change.before} -> {change.after}"
