@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models.structures import Rebuilt
 from ptp_symbolic.numeric.data import Log
+from ptp_symbolic.numeric.diagnose.readings import read_stiffness
 from ptp_symbolic.numeric.diagnose.structures import (
     Begun,
     FittedStructure,
@@ -17,7 +18,9 @@ from ptp_symbolic.numeric.diagnose.structures import (
     misfit,
 )
 from ptp_symbolic.numeric.diagnose.trial import side_by_side
+from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.work import Allowance
+from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.workflows.preparation import model_of, task_for
 from ptp_symbolic.workflows.result import Progress
@@ -89,7 +92,7 @@ def fit_structures(platform: Platform, every: Sequence[Rebuilt], logs: Logs) -> 
 
     def one(rebuilt: Rebuilt) -> Begun | str:
         try:
-            return _begun(rebuilt.platform, rebuilt, logs, known)
+            return _begun(rebuilt.platform, rebuilt, logs, known, alone.fitted.trial.fit)
         except InputError as error:
             return f"the platform with it cannot be fitted: {error}"
 
@@ -104,7 +107,11 @@ def fit_structures(platform: Platform, every: Sequence[Rebuilt], logs: Logs) -> 
 
 
 def _begun(
-    platform: Platform, rebuilt: Rebuilt | None, logs: Logs, known: Mapping[str, float]
+    platform: Platform,
+    rebuilt: Rebuilt | None,
+    logs: Logs,
+    known: Mapping[str, float],
+    declared: Fit | None = None,
 ) -> Begun:
     model = model_of(platform)
     task = task_for(
@@ -119,7 +126,16 @@ def _begun(
     )
     if rebuilt is None:
         return begin_structure((), frozenset(), task, (), known)
-    return begin_structure(rebuilt.keys, rebuilt.provides, task, rebuilt.starts, known)
+    starts = (*rebuilt.starts, *(_read_starts(rebuilt, model, declared) if declared else ()))
+    return begin_structure(rebuilt.keys, rebuilt.provides, task, starts, known)
+
+
+def _read_starts(rebuilt: Rebuilt, model: Model, declared: Fit) -> list[dict[str, float]]:
+    """The starts of a structure with stiffnesses as the fit of the `declared` one shows them."""
+    axis = str(rebuilt.added[0].axis)
+    read = {name: read_stiffness(declared, axis, model, name) for name in rebuilt.stiffnesses}
+    shown = {name: value for name, value in read.items() if value is not None}
+    return [{**start, **shown} for start in rebuilt.starts] if shown else []
 
 
 def _better_half(begun: Sequence[Begun], declared: FittedStructure) -> tuple[int, ...]:

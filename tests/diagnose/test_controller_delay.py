@@ -99,14 +99,20 @@ def record(path: Path, seed: int, delay: float) -> Path:
 
 @pytest.mark.long
 @pytest.mark.parametrize("delay", [0.0, DELAY])
-def test_the_delay_of_a_controller_is_named_where_there_is_one(tmp_path: Path, delay: float) -> None:
+def test_the_delay_of_a_controller_is_named_where_there_is_one(
+    tmp_path: Path, delay: float
+) -> None:
     (tmp_path / "servo.toml").write_text(PLATFORM, encoding="utf-8")
     paths = [record(tmp_path / f"run_{seed}.csv", seed, delay) for seed in range(5)]
     found = diagnose(tmp_path / "servo.toml", train=paths[:3], validate=paths[3:])
-    named = {effect.id: effect for effect in found.added}
     if not delay:
         assert found.verdict == "nothing_missing"
-        assert not named
         return
     assert found.verdict == "explained"
-    assert set(named) == {"controller_delay"}
+    (named,) = found.added
+    assert named["effect"] == "controller_delay"
+    assert not named["confusable_with"]
+    estimate = named["parameters"]["n_compute_pan"]
+    low, high = estimate["ci95"]
+    assert low <= delay <= high
+    assert estimate["value"] == pytest.approx(delay, abs=0.05)
