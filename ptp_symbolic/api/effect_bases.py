@@ -24,8 +24,8 @@ SERVED = (*DRIVEN, "pid_controller")
 
 
 def bases() -> tuple[Platform, ...]:
-    """A rigid two-axis machine, a pan axis with its whole drive train, two axes with friction, and a
-    pan axis under its own controller.
+    """A rigid two-axis machine, a pan axis with its whole drive train, two axes with friction, and
+    a pan axis under its own controller.
     """
     return _packaged_bases()
 

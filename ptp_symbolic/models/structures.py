@@ -30,8 +30,8 @@ class Rebuilt:
 
     `added` are the effects that it has more, the one it is named after first; `removed` those whose
     place they take. `starts` are values of the parameters that came with them, from which a fit
-    begins; those of `stiffnesses` may be read off the logs as well. Every effect `provides` mechanisms: where that of another structure has all of these,
-    it contains this one.
+    begins; those of `stiffnesses` may be read off the logs as well. Every effect `provides`
+    mechanisms: where that of another structure has all of these, it contains this one.
     """
 
     title: str

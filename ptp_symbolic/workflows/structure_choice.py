@@ -161,7 +161,7 @@ def _paired(
     fitted: Fitted, every: Sequence[Rebuilt], logs: Logs
 ) -> tuple[Fitted, Sequence[Rebuilt]]:
     """The fitted structures, and pairs of the best one and each of those one step away from it,
-    where one of these pairs leaves noise alone: bristles show beside the shaft that they are behind.
+    where one of these leaves noise alone: bristles show beside the shaft that they are behind.
     """
     best = fitted.order[0]
     declared = next(rebuilt for rebuilt in every if rebuilt.keys == best.keys)

@@ -99,7 +99,7 @@ def record(path: Path, seed: int, delay: float) -> Path:
 
 @pytest.mark.long
 @pytest.mark.parametrize("delay", [0.0, DELAY])
-def test_the_delay_of_a_controller_is_named_where_there_is_one(
+def test_a_controller_that_computes_is_named_where_there_is_one(
     tmp_path: Path, delay: float
 ) -> None:
     (tmp_path / "servo.toml").write_text(PLATFORM, encoding="utf-8")

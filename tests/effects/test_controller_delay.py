@@ -1,4 +1,4 @@
-"""A controller that computes for a time: a loop written by hand, exact by the matrix exponential."""
+"""A controller that computes for a time: a loop written by hand, by the matrix exponential."""
 
 from collections import deque
 
