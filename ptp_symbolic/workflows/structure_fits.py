@@ -126,16 +126,16 @@ def _begun(
     )
     if rebuilt is None:
         return begin_structure((), frozenset(), task, (), known)
-    starts = (*rebuilt.starts, *(_read_starts(rebuilt, model, declared) if declared else ()))
+    starts = _read_starts(rebuilt, model, declared) if declared else rebuilt.starts
     return begin_structure(rebuilt.keys, rebuilt.provides, task, starts, known)
 
 
-def _read_starts(rebuilt: Rebuilt, model: Model, declared: Fit) -> list[dict[str, float]]:
-    """The starts of a structure with stiffnesses as the fit of the `declared` one shows them."""
+def _read_starts(rebuilt: Rebuilt, model: Model, declared: Fit) -> Sequence[Mapping[str, float]]:
+    """The starts of a structure, its stiffnesses as the fit of the `declared` one shows them."""
     axis = str(rebuilt.added[0].axis)
     read = {name: read_stiffness(declared, axis, model, name) for name in rebuilt.stiffnesses}
     shown = {name: value for name, value in read.items() if value is not None}
-    return [{**start, **shown} for start in rebuilt.starts] if shown else []
+    return [{**start, **shown} for start in rebuilt.starts]
 
 
 def _better_half(begun: Sequence[Begun], declared: FittedStructure) -> tuple[int, ...]:

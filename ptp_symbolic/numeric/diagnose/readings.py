@@ -6,17 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt
 
+from ptp_symbolic.numeric.identify.constants import SPRING_BAND, SPRING_SHARE
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.sample_averages import usual_period
 from ptp_symbolic.numeric.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
-
-LOWEST = 1.0  # Hz; below, the error of a rigid model is drift
-HIGHEST = 20.0  # Hz; above, counts of the encoder outweigh the twist (benchmark, sets 321 to 394)
-ORDER = 2  # of the band-pass filter
-LEAST_SHARE = 0.6  # explained of the lag: shafts below 1500 N m/rad 0.64 to 0.98, all else 0.50
-FEWEST = 100  # samples of a run
 
 
 def spring_over_inertia(
@@ -29,13 +24,13 @@ def spring_over_inertia(
     expects, both every `period` s. Within a band of frequencies the spring gives the inertia its
     acceleration, stiffness times lag and damping times rate of the lag: two columns, least squares.
     """
-    nyquist = 0.5 / period
-    if nyquist <= HIGHEST:
+    lowest, highest = SPRING_BAND
+    if highest >= 0.5 / period:
         return None
-    band = butter(ORDER, [LOWEST, HIGHEST], "bandpass", fs=1.0 / period, output="sos")
+    band = butter(2, [lowest, highest], "bandpass", fs=1.0 / period, output="sos")
     columns, wanted = [], []
     for lag, angle in zip(lags, angles, strict=True):
-        if len(lag) >= FEWEST:
+        if len(lag) * period * lowest >= 1.0:
             twist, turned = sosfiltfilt(band, lag), sosfiltfilt(band, angle)
             columns.append(np.column_stack([twist, np.gradient(twist, period)]))
             wanted.append(np.gradient(np.gradient(turned, period), period))
@@ -46,7 +41,7 @@ def spring_over_inertia(
     back = np.column_stack([acceleration, rows[:, 1]])
     error = rows[:, 0] - back @ np.linalg.lstsq(back, rows[:, 0])[0]
     share = 1.0 - np.sum(error**2) / max(np.sum(rows[:, 0] ** 2), np.finfo(float).tiny)
-    return stiffness if share >= LEAST_SHARE and stiffness > 0.0 else None
+    return stiffness if share >= SPRING_SHARE and stiffness > 0.0 else None
 
 
 def read_stiffness(rigid: Fit, axis: str, model: Model, name: str) -> float | None:
