@@ -30,8 +30,8 @@ class Rebuilt:
 
     `added` are the effects that it has more, the one it is named after first; `removed` those whose
     place they take. `starts` are values of the parameters that came with them, from which a fit
-    begins; those of `stiffnesses` may be read off the logs as well. Every effect `provides`
-    mechanisms: where that of another structure has all of these, it contains this one.
+    begins. Every effect `provides` mechanisms: where that of another structure has all of these,
+    it contains this one.
     """
 
     title: str
@@ -40,7 +40,6 @@ class Rebuilt:
     removed: tuple[EffectDeclaration, ...]
     starts: tuple[Mapping[str, float], ...]
     provides: frozenset[str]
-    stiffnesses: tuple[str, ...] = ()
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -173,7 +172,6 @@ def _rebuilt(platform: Platform, effect: Effect, axis: str | None) -> Rebuilt:
         removed,
         tuple(dict(zip(names, point, strict=True)) for point in itertools.product(*grid)),
         _mechanisms(rebuilt, new),
-        tuple(p.name for p in fresh if p.read_as_stiffness),
     )
 
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models.structures import Rebuilt
 from ptp_symbolic.numeric.data import Log
-from ptp_symbolic.numeric.diagnose.readings import read_stiffness
 from ptp_symbolic.numeric.diagnose.structures import (
     Begun,
     FittedStructure,
@@ -18,9 +17,7 @@ from ptp_symbolic.numeric.diagnose.structures import (
     misfit,
 )
 from ptp_symbolic.numeric.diagnose.trial import side_by_side
-from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.work import Allowance
-from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.workflows.preparation import model_of, task_for
 from ptp_symbolic.workflows.result import Progress
@@ -92,7 +89,7 @@ def fit_structures(platform: Platform, every: Sequence[Rebuilt], logs: Logs) -> 
 
     def one(rebuilt: Rebuilt) -> Begun | str:
         try:
-            return _begun(rebuilt.platform, rebuilt, logs, known, alone.fitted.trial.fit)
+            return _begun(rebuilt.platform, rebuilt, logs, known)
         except InputError as error:
             return f"the platform with it cannot be fitted: {error}"
 
@@ -107,11 +104,7 @@ def fit_structures(platform: Platform, every: Sequence[Rebuilt], logs: Logs) -> 
 
 
 def _begun(
-    platform: Platform,
-    rebuilt: Rebuilt | None,
-    logs: Logs,
-    known: Mapping[str, float],
-    declared: Fit | None = None,
+    platform: Platform, rebuilt: Rebuilt | None, logs: Logs, known: Mapping[str, float]
 ) -> Begun:
     model = model_of(platform)
     task = task_for(
@@ -126,16 +119,7 @@ def _begun(
     )
     if rebuilt is None:
         return begin_structure((), frozenset(), task, (), known)
-    starts = _read_starts(rebuilt, model, declared) if declared else rebuilt.starts
-    return begin_structure(rebuilt.keys, rebuilt.provides, task, starts, known)
-
-
-def _read_starts(rebuilt: Rebuilt, model: Model, declared: Fit) -> Sequence[Mapping[str, float]]:
-    """The starts of a structure, its stiffnesses as the fit of the `declared` one shows them."""
-    axis = str(rebuilt.added[0].axis)
-    read = {name: read_stiffness(declared, axis, model, name) for name in rebuilt.stiffnesses}
-    shown = {name: value for name, value in read.items() if value is not None}
-    return [{**start, **shown} for start in rebuilt.starts]
+    return begin_structure(rebuilt.keys, rebuilt.provides, task, rebuilt.starts, known)
 
 
 def _better_half(begun: Sequence[Begun], declared: FittedStructure) -> tuple[int, ...]:

@@ -66,7 +66,6 @@ LEAST_CYCLES = 3  # 1/range; slower waves are like any slow change, or a taper (
 BINS_PER_CYCLE = 4.0  # 1; of the highest frequency of a scan: a bin dims it by 10 %; derived
 ATTENUATED = 2.0  # 1/window; of such a wave an average leaves 11 %; derived
 DECLARED_AMOUNT = 0.05  # 1; share by which a declared value is changed to see its effect; scaled
-SPRING_SHARE = 0.6  # 1; of a lag, by a spring: over 0.64 with one, to 0.50 without; benchmark
 BINS = 16  # 1; of a map of what is left, of half a gap; definition
 
 # Noise of a signal
@@ -87,7 +86,6 @@ ROUNDS = 40  # 1; at most, until a loop has converged; halvings: to 1e-12; deriv
 WITH_TANGENTS = 3  # 1; cost of a sample with its sensitivities over one without; derived
 
 # Sequences
-SPRING_BAND = (1.0, 20.0)  # Hz; of shafts: a fit drifts below, counts hide them above; scaled
 LENGTHS = (8.0, 4.0, 2.0, 1.0, 0.5)  # s; lengths of windows that are tried, by halves; scaled
 AMOUNTS = tuple(2.0**k for k in range(-3, 3))  # 1; times its start, of an effect, by twos; scaled
 HALF_WIDTHS = (0.08, 0.11, 0.16, 0.22)  # s; windows of rows, by root two; scaled

@@ -20,8 +20,6 @@ class Parameter:
     (the rest angle of a spring without stiffness). `starts` are the values from which a search
     begins when the parameter is not declared. A parameter with a `period` wraps around. `locked_to`
     ("time" or "angle") marks a frequency that is searched at the strongest lines of the residual.
-    The stiffness of a shaft before the joint is `read_as_stiffness`: a search begins it at what
-    the residual of a rigid model shows, where that shows any, in place of its starts.
     `turns`: of a motor, which turns before a linear joint too. `linear` names the fields that are
     others on a linear joint, where they do not follow from those here.
     """
@@ -36,7 +34,6 @@ class Parameter:
     starts: tuple[float, ...] = ()
     period: float | None = None
     locked_to: str | None = None
-    read_as_stiffness: bool = False
     turns: bool = False
     linear: Mapping[str, Any] | None = field(default=None, hash=False)
 

@@ -15,7 +15,6 @@ PARAMETERS = (
         1e9,
         "shaft stiffness",
         starts=(100.0, 3000.0),
-        read_as_stiffness=True,
     ),
     Parameter("d_shaft_{axis}", "N m s/rad", 1.0, 0.0, 1e6, "shaft damping", starts=(1.0,)),
 )
