@@ -76,7 +76,7 @@ def test_every_sample_is_that_of_a_loop_written_by_hand(model: Model, delay: flo
     values = {**VALUES, "n_compute_pan": delay}
     found = simulate(model, times, goal, values, rtol=1e-12, atol=1e-12)
     assert found["theta_pan"] == pytest.approx(angles, abs=1e-9)
-    assert found["acting_pan"] == pytest.approx(volts, abs=1e-6)
+    assert found["u_acting_pan"] == pytest.approx(volts, abs=1e-6)
 
 
 def test_a_delay_of_no_time_is_the_loop_without_one(model: Model) -> None:

@@ -431,7 +431,7 @@ CASES = (
     Case(
         "controller_delay",
         "dc_motor pid_controller controller_delay",
-        voltage(lambda r: r.acting_pan),
+        voltage(lambda r: r.u_acting_pan),
         copper,
         {},
     ),

@@ -1,7 +1,7 @@
 """A sampled controller that needs time to compute: what acts was computed from an earlier sample.
 
 The command of a sample acts that many sampling times later, and is held until the next one does.
-The sampled state `kept` has the command of the sample before, so that a delay may pass one sample.
+The state `u_kept` has the command of the sample before, so that a delay may pass one sample.
 """
 
 import sympy as sp
@@ -24,9 +24,9 @@ PARAMETERS = (
     ),
 )
 STATES = (
-    ("acting_{axis}", "command of the {axis} controller that acts"),
-    ("latest_{axis}", "command of the {axis} controller from its latest sample"),
-    ("kept_{axis}", "command of the {axis} controller from the sample before"),
+    ("u_acting_{axis}", "command of the {axis} controller that acts"),
+    ("u_latest_{axis}", "command of the {axis} controller from its latest sample"),
+    ("u_kept_{axis}", "command of the {axis} controller from the sample before"),
 )
 
 
