@@ -20,10 +20,13 @@ BARE = ("rigid_bodies",)
 DRY = (*BARE, "csvs_friction")
 DRIVEN = (*DRY, "dc_motor")
 GEARED = (*DRIVEN, "shaft_compliance")
+SERVED = (*DRIVEN, "pid_controller")
 
 
 def bases() -> tuple[Platform, ...]:
-    """A rigid two-axis machine, a pan axis with its whole drive train, two axes with friction."""
+    """A rigid two-axis machine, a pan axis with its whole drive train, two axes with friction, and
+    a pan axis under its own controller.
+    """
     return _packaged_bases()
 
 
@@ -41,6 +44,7 @@ def _packaged_bases() -> tuple[Platform, ...]:
         effect("backlash", "pan"),
         effect("csvs_friction", "pan", "gear"),
     )
+    served = (*drive[:4], effect("pid_controller", "pan"))
     friction = tuple(
         declared
         for axis in ("pan", "tilt")
@@ -53,6 +57,7 @@ def _packaged_bases() -> tuple[Platform, ...]:
         read_platform("thesis-payload"),
         Platform("driven_pan", "Driven pan axis", ("pan",), 9.81, drive, (), ()),
         Platform("two_axes", "Two axes", ("pan", "tilt"), 9.81, (*bodies, *friction), (), ()),
+        Platform("served_pan", "Pan axis and controller", ("pan",), 9.81, served, (), ()),
     )
 
 
@@ -129,7 +134,7 @@ def carriage(*names: str) -> Platform:
 def carriage_with(effect: Effect) -> Platform:
     """The smallest carriage that takes `effect`. Raises InputError where none does."""
     refusal: InputError | None = None
-    for base in (BARE, DRY, DRIVEN, GEARED):
+    for base in (BARE, DRY, DRIVEN, GEARED, SERVED):
         try:
             platform = carriage(*base, effect.id)
             refuse_impossible(assemble(platform))

@@ -71,6 +71,24 @@ def structures(platform: Platform) -> tuple[tuple[Rebuilt, ...], dict[str, str]]
     return tuple(found), {key: why for key, why in untried.items() if key not in tried}
 
 
+def pairs(first: Rebuilt) -> tuple[Rebuilt, ...]:
+    """The structures one step away from the platform of the structure `first`, each as a pair with
+    `first`; nothing is put in place of what that added.
+    """
+    own = {(e.effect, e.axis) for e in first.added}
+    return tuple(
+        replace(
+            second,
+            title=f"{first.title}, {second.title}",
+            added=(*first.added, *second.added),
+            removed=(*first.removed, *second.removed),
+            provides=first.provides | second.provides,
+        )
+        for second in structures(first.platform)[0]
+        if not own & {(e.effect, e.axis) for e in second.removed}
+    )
+
+
 def _everywhere(platform: Platform) -> Iterator[Site]:
     """Every kind of every effect of the catalogue, on every axis."""
     for each in catalogue():

@@ -9,7 +9,7 @@ from typing import Any
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import variants
-from ptp_symbolic.models.structures import structures
+from ptp_symbolic.models.structures import Rebuilt, pairs, structures
 from ptp_symbolic.numeric.diagnose.findings import Search
 from ptp_symbolic.numeric.diagnose.floor import floor_of, leaves_noise_alone
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain
@@ -125,6 +125,9 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     fitted = fit_structures(platform, every, logs)
     if not terms.is_quiet and not fitted.quiet and not logs.allowance.is_over:
         fitted = _led_on(platform, fitted, terms, logs)
+        if not fitted.quiet and fitted.order and not logs.allowance.is_over:
+            fitted, beside = _paired(fitted, every, logs)
+            platforms.update({rebuilt.keys: rebuilt.platform for rebuilt in beside})
     followed = fitted.quiet or ([] if terms.is_quiet else fitted.order[:FOLLOWED])
     outcomes = [searched(s, brief=True) for s in followed]
     is_late = not terms.is_quiet and logs.allowance.is_over
@@ -152,6 +155,26 @@ def _led_on(platform: Platform, fitted: Fitted, terms: Searched, logs: Logs) -> 
     led = fit_structures(beside, every, logs)
     led = led if led.quiet else led.led_on(logs)
     return led if led.order else fitted.led_on(logs)
+
+
+def _paired(
+    fitted: Fitted, every: Sequence[Rebuilt], logs: Logs
+) -> tuple[Fitted, Sequence[Rebuilt]]:
+    """The fitted structures, and pairs of the best one and each of those one step away from it,
+    where one of these leaves noise alone: bristles show beside the shaft that they are behind.
+    """
+    best = fitted.order[0]
+    declared = next(rebuilt for rebuilt in every if rebuilt.keys == best.keys)
+    there = variants.extended(declared.platform, (), best.trial.values, ())
+    beside = pairs(replace(declared, platform=there))
+    logs.progress(f"fitting pairs with {' + '.join(best.keys)}")
+    found = fit_structures(there, beside, logs)
+    if not found.quiet:
+        found = found.led_on(logs)
+    if not found.quiet:
+        return fitted, ()
+    finished = tuple(found.begun[k] for k in found.better)
+    return replace(fitted, begun=(*fitted.begun, *finished)), beside
 
 
 def _at_length(

@@ -428,6 +428,13 @@ CASES = (
         {"u_supply_pan": 12.0},
     ),
     Case("pid_controller", "dc_motor pid_controller", voltage(lambda r: r.command_pan), copper, {}),
+    Case(
+        "controller_delay",
+        "dc_motor pid_controller controller_delay",
+        voltage(lambda r: r.u_acting_pan),
+        copper,
+        {},
+    ),
 )
 
 

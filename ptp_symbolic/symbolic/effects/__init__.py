@@ -21,6 +21,7 @@ from ptp_symbolic.symbolic.effects.base_tilt import BASE_TILT
 from ptp_symbolic.symbolic.effects.cable_spring import CABLE_SPRING
 from ptp_symbolic.symbolic.effects.cogging import COGGING
 from ptp_symbolic.symbolic.effects.constant_torque import CONSTANT_TORQUE
+from ptp_symbolic.symbolic.effects.controller_delay import CONTROLLER_DELAY
 from ptp_symbolic.symbolic.effects.csvs_friction import CSVS_FRICTION
 from ptp_symbolic.symbolic.effects.dc_motor import DC_MOTOR
 from ptp_symbolic.symbolic.effects.direction_dependent_friction import DIRECTION_DEPENDENT_FRICTION
@@ -99,6 +100,7 @@ PACKAGED: tuple[Effect, ...] = (
     DC_MOTOR,
     LINEAR_ACTUATOR,
     PID_CONTROLLER,
+    CONTROLLER_DELAY,
     PWM_DRIVE,
     PRESCRIBED_MOTION,
     DRIVE_DEADBAND,

@@ -51,6 +51,7 @@ def _contribute(place: Place) -> Contribution:
     sums = {total: integral + period * error, asked: kp * error + part + kd * derivative}
     given = _within(NearestCount(asked, full / steps), full)
     return Contribution(
+        quantities={f"computed_{place.axis}": command, f"sampling_{place.axis}": period},
         changes={f"command_{place.axis}": Change(through=lambda _: command)},
         commands={
             place.own_axis: (Input(str(wanted), "rad", f"angle asked of the {place.axis} joint"),)
