@@ -43,14 +43,14 @@ def test_fits_begin_in_the_other_valleys_the_deepest_first(
         own = START * FAR_OFF ** (-2.0 / WAVES)
         trial = fitted(task, (), proposals.start | {"b_pan": own}, None)
 
-        def simulated(_: Any, fit: Any, values: dict[str, float], __: Any) -> list[Evaluation]:
+        def simulated_at(_: Any, fit: Any, values: dict[str, float]) -> list[Evaluation]:
             size = ripple(values["b_pan"])
             return [replace(e, residual=np.full_like(e.residual, size)) for e in fit.evaluations]
 
-        there = simulated(None, trial.fit, {"b_pan": own}, None)
+        there = simulated_at(None, trial.fit, {"b_pan": own})
         trial = replace(trial, fit=replace(trial.fit, evaluations=tuple(there)))
         monkeypatch.setattr(starts, "untold", lambda _: [damping, replace(damping, start=0.0)])
-        monkeypatch.setattr(starts, "simulated", simulated)
+        monkeypatch.setattr(starts, "simulated_at", simulated_at)
         begun = starts.from_far_off(task, proposals, trial)
     found = [t.values["b_pan"] / START for t in begun]
     assert found == pytest.approx([1.0, 1.5**2, FAR_OFF, 1.0 / FAR_OFF], rel=1e-9)

@@ -61,10 +61,12 @@ class SealedCache(caching.FunctionCache):
 
     def load_overload(self, signature: Any, target: Any) -> Any:
         """The compiled function, or None where there is none that can be used."""
-        came_along = shipped.read(self._shipped_name(signature, target))
-        if came_along is not None:
-            target.refresh()
-            return self._impl.rebuild(target, came_along)
+        with suppress(OSError):
+            if shipped.fits():
+                name = self._shipped_name(signature, target)
+                came_along = SealedFiles(str(shipped.FOLDER), name, None)._load_data(name)
+                target.refresh()
+                return self._impl.rebuild(target, came_along)
         with suppress(OSError):
             return super().load_overload(signature, target)
         return None
@@ -73,8 +75,9 @@ class SealedCache(caching.FunctionCache):
         """Keep the compiled function, where that is possible."""
         with suppress(OSError):
             super().save_overload(signature, data)
-        name = self._shipped_name(signature, data.target_context)
-        shipped.write(name, self._impl.reduce(data))
+        if folder := os.environ.get(shipped.WRITE_INTO):
+            name = self._shipped_name(signature, data.target_context)
+            SealedFiles(folder, name, None)._save_data(name, self._impl.reduce(data))
 
     def _shipped_name(self, signature: Any, target: Any) -> str:
         _, _, code = self._index_key(signature, target.codegen())

@@ -7,8 +7,6 @@ that this one is not, is passed over, and compiled where it is needed.
 """
 
 import hashlib
-import os
-import pickle
 import platform
 import sys
 from dataclasses import dataclass
@@ -24,7 +22,6 @@ import numba
 PACKAGE = Path(__file__).parents[2]
 FOLDER = PACKAGE / "compiled"
 WRITE_INTO = "PTP_SYMBOLIC_COMPILE_INTO"  # variable that names the folder to be filled by a build
-DIGEST = hashlib.sha256().digest_size
 
 
 @dataclass(frozen=True)
@@ -81,23 +78,3 @@ def _digest_of_kernels() -> str:
     for path in (*paths, PACKAGE / "numeric/runtime/element_layout.py"):
         digest.update(path.read_bytes())
     return digest.hexdigest()
-
-
-def read(name: str) -> Any:
-    """What was written under `name`; None where there is nothing whole that fits."""
-    if not fits():
-        return None
-    try:
-        content = (FOLDER / name).read_bytes()
-    except OSError:
-        return None
-    body, digest = content[:-DIGEST], content[-DIGEST:]
-    return pickle.loads(body) if hashlib.sha256(body).digest() == digest else None
-
-
-def write(name: str, payload: Any) -> None:
-    """Keep `payload` under `name` where a build asks for it."""
-    folder = os.environ.get(WRITE_INTO)
-    if folder:
-        body = pickle.dumps(payload)
-        (Path(folder) / name).write_bytes(body + hashlib.sha256(body).digest())
