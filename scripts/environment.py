@@ -76,13 +76,10 @@ def create_environment() -> None:
 
 def install_checkout(extras: list[str]) -> None:
     """Install this checkout with its dependencies into `.venv`; pip prints what goes wrong."""
-    say("Installing ptp-symbolic and what it needs (a minute or two, once) ...")
+    say("Installing ptp-symbolic and what it needs (some minutes, once) ...")
     target = f"{CHECKOUT}[{','.join(extras)}]" if extras else str(CHECKOUT)
     command = [str(PYTHON), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-    # Kernels compiled ahead would fit until the first change of a source.
-    plain = os.environ | {"PTP_SYMBOLIC_AHEAD": "0"}
-    command += ["--no-compile", "--editable", target]
-    if subprocess.run(command, env=plain).returncode != 0:
+    if subprocess.run([*command, "--no-compile", "--editable", target]).returncode != 0:
         leave("pip could not install the package (its message is above): check the network.")
     compile_packages()
 
