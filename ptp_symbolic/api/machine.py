@@ -323,6 +323,11 @@ def load(source: Source, *, catalogue_values: bool = False) -> Machine:
     """
     if isinstance(source, Model):
         return machine_of(source)
+    if not isinstance(source, str | Path | Platform):
+        raise InputError(
+            f"A machine of type {type(source).__name__}; give the name of a model or a preset, the"
+            " path of a platform file, a Platform or a Machine."
+        )
     if not isinstance(source, Platform) and str(source) in model_names():
         return machine_of(load_model(str(source)))
     if not (isinstance(source, Platform) and catalogue_values):

@@ -234,6 +234,8 @@ def begin(machine: Machine, plan: SweepPlan, out: Path, resume: bool) -> list[in
         missing = [c for c in range(plan.chunks) if not part_path(out, c).is_file()]
         if not resume and missing != list(range(plan.chunks)):
             done = plan.chunks - len(missing)
+            if not missing:
+                raise InputError(f"'{out}' holds this sweep, complete; give another `out`.")
             raise InputError(
                 f"'{out}' holds {done} of {plan.chunks} chunks of this sweep; add --resume to"
                 " compute the others, or give another `out`."

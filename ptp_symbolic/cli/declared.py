@@ -11,5 +11,5 @@ def note_defaults(platform: Platform) -> None:
 
     left = undeclared_parameters(platform)
     if left:
-        shown = ", ".join(f"{p.name} = {p.default:g} {p.unit}" for p in left)
+        shown = ", ".join(f"{p.name} = {p.default:g} {p.unit}".removesuffix(" 1") for p in left)
         click.echo(f"Not declared, at their natural default: {shown}.", err=True)

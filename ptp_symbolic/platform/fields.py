@@ -26,7 +26,9 @@ def shown(value: object) -> str:
 def table(value: object, where: str, allowed: Collection[str] | None = None) -> dict[str, Any]:
     """Return `value` as a table whose keys are all in `allowed` (None: any key)."""
     if not isinstance(value, dict):
-        raise InputError(f"{where}: {shown(value)} is not a table; write it as a TOML table.")
+        raise InputError(
+            f"{where}: {shown(value)} is not a table; write it as a TOML table, {{ key = value }}."
+        )
     for key in value:
         if allowed is not None and key not in allowed:
             choices = ", ".join(sorted(allowed))

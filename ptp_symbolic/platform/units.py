@@ -143,7 +143,10 @@ def quantity(given: float | str, unit: str, what: str) -> float:
     if not math.isfinite(value):
         raise InputError(f"{what} = {text}; give a finite number.")
     if own != unit and not compatible(own, unit):
-        raise InputError(f"{what} = {text}: {own} does not fit its unit {unit}.")
+        raise InputError(
+            f"{what} = {text}: {own} does not fit its unit {unit}; give a number in"
+            f" {unit}, or another unit of the same kind."
+        )
     return value if own == unit else value * to_si(own)[0]
 
 

@@ -88,7 +88,7 @@ def task_for(
     """All that stays the same; `declared` are the keys of the effects that are not candidates, and
     `allowance` is what the search may take (None: no limit).
     """
-    progress("preparing the simulation (compiles for about a minute once on a new machine)")
+    progress("preparing the simulation")
     refuse_unknown_signals(platform, model)
     allowance = Allowance() if allowance is None else allowance
     with naming_file(platform):

@@ -60,10 +60,14 @@ def output_times(times: float | ArrayLike, every: float = OUTPUT_STEP) -> FloatA
     """Output times [k] in s: from 0 to a duration in s and `every` so many s between, or as given;
     a tuple of two is the span (start, end), with `every` so many s between.
 
-    Raises InputError for a duration or an interval that is not positive, for less than two times or
-    times that are not finite and increasing, and for five million or more within a duration.
+    Raises InputError for what is no number, for a duration or an interval that is not positive, for
+    less than two times or times that are not finite and increasing, and for five million or more
+    within a duration.
     """
-    t = np.array(times, dtype=np.float64)
+    try:
+        t = np.array(times, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"Times {times!r:.60}; give seconds, as numbers.") from error
     if t.ndim == 0:
         if not 0.0 < t < np.inf:
             raise InputError(f"Duration {float(t):g} s; give a positive number of seconds.")
