@@ -118,10 +118,14 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
         return _searched(there, structure, logs, brief=brief)
 
     terms = searched(None, brief=bool(every))
-    if not every or (terms.is_quiet and not terms.found.chosen.candidates):
-        why = "not tried: the residual of the declared structure is noise alone"
+    is_enough = terms.is_quiet and not terms.found.chosen.candidates
+    is_stopped = logs.allowance.is_out_of_time
+    if not every or is_enough or is_stopped:
+        why = "the residual of the declared structure is noise alone"
+        why = f"not tried: {why if is_enough else 'the time was over'}"
         untried = {**untried, **{key: why for each in every for key in each.keys}}
-        return Choice(terms.outcome, terms.outcome, (), untried, terms.found.is_cut_short)
+        is_cut_short = is_stopped or terms.found.is_cut_short
+        return Choice(terms.outcome, terms.outcome, (), untried, is_cut_short)
     fitted = fit_structures(platform, every, logs)
     if not terms.is_quiet and not fitted.quiet and not logs.allowance.is_over:
         fitted = _led_on(platform, fitted, terms, logs)
