@@ -76,5 +76,7 @@ def _digest_of_kernels() -> str:
     digest = hashlib.sha256()
     paths = sorted((PACKAGE / "numeric/simulation").rglob("*.py"))
     for path in (*paths, PACKAGE / "numeric/runtime/element_layout.py"):
-        digest.update(path.read_bytes())
+        source = path.read_bytes()
+        if any(word in source for word in (b"@kernel", b"@inlined", b"@merged", b"njit")):
+            digest.update(source)
     return digest.hexdigest()
