@@ -21,6 +21,8 @@ import numba
 
 PACKAGE = Path(__file__).parents[2]
 FOLDER = PACKAGE / "compiled"
+# What a source says whose functions are compiled into others.
+COMPILED = (b"@kernel", b"@inlined", b"@merged", b"njit", b"jitable", b"@intrinsic")
 WRITE_INTO = "PTP_SYMBOLIC_COMPILE_INTO"  # variable that names the folder to be filled by a build
 
 
@@ -77,6 +79,6 @@ def _digest_of_kernels() -> str:
     paths = sorted((PACKAGE / "numeric/simulation").rglob("*.py"))
     for path in (*paths, PACKAGE / "numeric/runtime/element_layout.py"):
         source = path.read_bytes()
-        if any(word in source for word in (b"@kernel", b"@inlined", b"@merged", b"njit")):
+        if any(word in source for word in COMPILED):
             digest.update(source)
     return digest.hexdigest()
