@@ -166,8 +166,13 @@ def _paired(
 ) -> tuple[Fitted, Sequence[Rebuilt]]:
     """The fitted structures, and pairs of the best one and each of those one step away from it,
     where one of these leaves noise alone: bristles show beside the shaft that they are behind.
+
+    A best one that does not surely halve the squared error of the declared structure is no half of
+    a pair: many small deviations, not two large ones, are what such logs show.
     """
     best = fitted.order[0]
+    if not gain_over(best, fitted.declared).is_most:
+        return fitted, ()
     declared = next(rebuilt for rebuilt in every if rebuilt.keys == best.keys)
     there = variants.extended(declared.platform, (), best.trial.values, ())
     beside = pairs(replace(declared, platform=there))
