@@ -252,7 +252,7 @@ class _Wanted:
             raise unknown("device", device, (PROCESSOR, GPU))
         if device == GPU and self.grid:
             raise InputError(
-                "A GPU keeps final states alone; ask for the outputs 'final' or 'final(SIGNAL)', or"
+                "A GPU keeps final states alone; request the outputs 'final' or 'final(SIGNAL)', or"
                 " leave `device` out."
             )
 

@@ -109,7 +109,7 @@ RULES = (
     ),
     Rule(
         "most beside a remainder",
-        "Where more than noise remains, a member surely takes away more than it leaves.",
+        "Where more than noise remains, a member surely explains more of the error than remains.",
         _in("gain", "MOST"),
         -np.inf,
     ),
@@ -290,7 +290,7 @@ RULES = (
     ),
     Rule(
         "restarts",
-        "A set is begun anew from the rows and over windows, unless noise alone is left.",
+        "A set is fitted again from other starts and over windows, unless its residual is noise.",
         _in("seeker", "Seeker.restarted"),
         _given(1),
     ),
