@@ -109,12 +109,12 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     structure that fits best, and of the declared one where that is beaten by little.
     """
     every, untried = structures(platform)
-    platforms = {rebuilt.keys: rebuilt.platform for rebuilt in every}
+    platforms = _platforms(every)
 
     def searched(structure: FittedStructure | None, brief: bool) -> Searched:
         name = " + ".join(structure.keys) if structure else ""
         logs.progress(f"searching for terms beside {name or 'what is declared'}")
-        there = platforms[structure.keys] if structure else platform
+        there = platforms[structure.keys, structure.provides] if structure else platform
         return _searched(there, structure, logs, brief=brief)
 
     terms = searched(None, brief=bool(every))
@@ -131,7 +131,7 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
         fitted = _led_on(platform, fitted, terms, logs)
         if not fitted.quiet and fitted.order and not logs.allowance.is_over:
             fitted, beside = _paired(fitted, every, logs)
-            platforms.update({rebuilt.keys: rebuilt.platform for rebuilt in beside})
+            platforms |= _platforms(beside)
     followed = fitted.quiet or ([] if terms.is_quiet else fitted.order[:FOLLOWED])
     outcomes = [searched(s, brief=True) for s in followed]
     is_late = not terms.is_quiet and logs.allowance.is_over
@@ -143,6 +143,11 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     rows = tuple(_row(s, fitted.declared, chosen, refused) for s in [*order, *rest])
     is_cut_short = is_late or any(s.found.is_cut_short for s in [terms, *outcomes])
     return Choice(chosen, terms.outcome, rows, {**untried, **fitted.failed}, is_cut_short)
+
+
+def _platforms(every: Sequence[Rebuilt]) -> dict[tuple[tuple[str, ...], frozenset[str]], Platform]:
+    """The platforms of structures by keys and mechanisms: kinds of one effect have one key."""
+    return {(rebuilt.keys, rebuilt.provides): rebuilt.platform for rebuilt in every}
 
 
 def _led_on(platform: Platform, fitted: Fitted, terms: Searched, logs: Logs) -> Fitted:
@@ -173,7 +178,7 @@ def _paired(
     best = fitted.order[0]
     if not gain_over(best, fitted.declared).is_most:
         return fitted, ()
-    declared = next(rebuilt for rebuilt in every if rebuilt.keys == best.keys)
+    declared = next(r for r in every if (r.keys, r.provides) == (best.keys, best.provides))
     there = variants.extended(declared.platform, (), best.trial.values, ())
     beside = pairs(replace(declared, platform=there))
     logs.progress(f"fitting pairs with {' + '.join(best.keys)}")
@@ -259,15 +264,14 @@ def _is_enough(structure: FittedStructure, platform: Platform) -> bool:
 
 def _chosen(
     terms: Outcome, outcomes: Sequence[Outcome], others: Sequence[FittedStructure], logs: Logs
-) -> tuple[Outcome, dict[str, str]]:
+) -> tuple[Outcome, dict[FittedStructure, str]]:
     """The outcome that predicts best, and why structures that were followed are not named."""
-    refused: dict[str, str] = {}
+    refused: dict[FittedStructure, str] = {}
     accepted: list[Outcome] = []
     rivals: list[Rival] = []
     for outcome in outcomes:
         structure = outcome.structure
         assert structure is not None
-        name = " + ".join(structure.keys)
         final = outcome.verdict.final
         without = on_runs_of(terms.found.task, terms.verdict.final, final.fit.runs)
         quiet = outcome.verdict.word not in (PARTLY, UNEXPLAINED)
@@ -287,7 +291,7 @@ def _chosen(
             if not is_clearly_more(against, 1, structure.task.material):
                 candidates = (*structure.added, *final.candidates)
                 rivals.append(Rival(replace(final, candidates=candidates), against))
-        refused[name] = why
+        refused[structure] = why
     if accepted:
         best = ranked([o.verdict.final for o in accepted])[0] if len(accepted) > 1 else None
         return next(o for o in accepted if best is None or o.verdict.final is best), refused
@@ -362,7 +366,10 @@ def _is_borne_out(named: Outcome, terms: Outcome, quiet: bool) -> bool:
 
 
 def _row(
-    structure: FittedStructure, declared: FittedStructure, chosen: Outcome, refused: dict[str, str]
+    structure: FittedStructure,
+    declared: FittedStructure,
+    chosen: Outcome,
+    refused: Mapping[FittedStructure, str],
 ) -> dict[str, Any]:
     """A row of the ranking for a structure without terms."""
     failed = structure.trial.fit.failed
@@ -373,7 +380,7 @@ def _row(
         why = f"the fit failed: {failed}"
     else:
         otherwise = "predicts worse than the best structure, or no better than the declared one"
-        why = refused.get(" + ".join(structure.keys), otherwise)
+        why = refused.get(structure, otherwise)
     earned = None if failed else gain_over(structure, declared)
     row = ranking_row(structure.added, structure.trial, earned, accepted, why)
     return {**row, "structure": list(structure.keys)}

@@ -8,7 +8,13 @@ import pytest
 
 from ptp_symbolic.models.structures import structures
 from ptp_symbolic.models.variants import candidate_effects, with_candidates
-from ptp_symbolic.platform import EffectDeclaration, Platform, effect_key, read_platform
+from ptp_symbolic.platform import (
+    EffectDeclaration,
+    Platform,
+    SignalDeclaration,
+    effect_key,
+    read_platform,
+)
 from ptp_symbolic.symbolic.derivation.placement import place_effects
 from ptp_symbolic.symbolic.effects import EFFECTS
 
@@ -54,6 +60,21 @@ def test_bristles_take_the_place_of_dry_friction_and_keep_its_values() -> None:
     effects = {e.effect for e in lugre.platform.effects}
     assert "lugre_friction" in effects and "csvs_friction" not in effects
     assert [e.effect for e in lugre.removed] == ["csvs_friction"]
+
+
+def test_kinds_of_one_effect_are_told_apart_by_what_they_change() -> None:
+    """A filter of the angle and one of the current share a key: by the key alone one of them would
+    be judged on the platform of the other.
+    """
+    bare = platform_of(*BODIES, *SERVO)
+    signals = (
+        SignalDeclaration("theta_pan", "output", "angle", "rad"),
+        SignalDeclaration("i_pan", "output", "current", "A"),
+    )
+    found = structures(replace(bare, signals=signals))[0]
+    lags = [s for s in found if s.keys == ("measurement_lag@pan",)]
+    assert {e.kind for s in lags for e in s.added} == {"angle", "current"}
+    assert len({(s.keys, s.provides) for s in found}) == len(found)
 
 
 def test_terms_are_searched_for_beside_bristles_but_not_the_friction_that_they_are() -> None:
