@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models.structures import Rebuilt
@@ -57,12 +58,12 @@ class Fitted:
         """All structures."""
         return tuple(b.fitted for b in self.begun)
 
-    @property
+    @cached_property
     def order(self) -> list[FittedStructure]:
         """Those that predict better than the declared one, the best first (see `by_fit`)."""
         return by_fit(self.declared, self.every)
 
-    @property
+    @cached_property
     def quiet(self) -> list[FittedStructure]:
         """The best that leaves noise alone, if any does: the logs tell a parameter of what it is
         named after, where they do so of any.

@@ -8,6 +8,8 @@ not; with what else the logs lack it is judged as any term is.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
+from weakref import WeakKeyDictionary
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs
@@ -25,10 +27,13 @@ from ptp_symbolic.numeric.diagnose.trial import (
     halving,
     misfits,
     ranked,
+    side_by_side,
 )
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.windows import parted_like
+
+_ON_OTHER_RUNS: WeakKeyDictionary[Trial, dict[tuple[Any, ...], Trial]] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,12 +148,20 @@ def effects_of(task: Task, keys: Sequence[str]) -> tuple[Candidate, ...]:
 
 
 def on_runs_of(task: Task, trial: Trial, pattern: Sequence[Run]) -> Trial:
-    """The trial fitted to the windows and samples of other runs of the same logs."""
-    own = [(run.source, run.time[0], len(run.time)) for run in trial.fit.runs]
-    if own == [(run.source, run.time[0], len(run.time)) for run in pattern]:
+    """The trial fitted to the windows and samples of other runs of the same logs; kept as long as
+    the trial is, for one is compared with many.
+    """
+    own, other = (
+        [(r.source, r.time[0], len(r.time)) for r in each] for each in (trial.fit.runs, pattern)
+    )
+    if own == other:
         return trial
-    runs = parted_like(task.model, task.whole, pattern)
-    return refitted_in(replace(task, every_sample=runs, train=runs, windows=()), trial)
+    kept, windows = _ON_OTHER_RUNS.setdefault(trial, {}), (task, *other)
+    if windows not in kept:
+        runs = parted_like(task.model, task.whole, pattern)
+        part = replace(task, every_sample=runs, train=runs, windows=())
+        kept[windows] = refitted_in(part, trial)
+    return kept[windows]
 
 
 def gain_over(one: FittedStructure, other: FittedStructure) -> Gain:
@@ -161,12 +174,11 @@ def by_fit(declared: FittedStructure, found: Sequence[FittedStructure]) -> list[
     first; before it those with fewer parameters that predict materially as well, or that it
     contains and does not surely better.
     """
-    better = [
-        s
-        for s in found
-        if not s.trial.fit.failed and gain_over(s, declared).share >= declared.task.material
-    ]
-    cost = {id(s): misfit(s, declared) for s in better}
+    whole = [s for s in found if not s.trial.fit.failed]
+    gains = side_by_side(lambda s: gain_over(s, declared), whole)
+    better = [s for s, g in zip(whole, gains, strict=True) if g.share >= declared.task.material]
+    misfits_of_better = side_by_side(lambda s: misfit(s, declared), better)
+    cost = {id(s): m for s, m in zip(better, misfits_of_better, strict=True)}
     left, ordered = sorted(better, key=lambda s: cost[id(s)]), []
     while left:
         best = left[0]
@@ -208,14 +220,13 @@ def alternatives(
     """Structures that the chosen one does not predict clearly better than; one that contains it
     adds nothing that these logs show.
     """
-    return [
+    others = [
         s
         for s in found
-        if s is not chosen
-        and not s.trial.fit.failed
-        and not chosen.provides <= s.provides
-        and not is_better(chosen, s)
+        if s is not chosen and not s.trial.fit.failed and not chosen.provides <= s.provides
     ]
+    beaten = side_by_side(lambda s: is_better(chosen, s), others)
+    return [s for s, worse in zip(others, beaten, strict=True) if not worse]
 
 
 def is_told(effect: Candidate, trial: Trial) -> bool:
