@@ -9,8 +9,7 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.black_box import require_library
 from ptp_symbolic.numeric.data import log_files, read_split_logs
 from ptp_symbolic.numeric.diagnose.preparation import turned_inputs
-from ptp_symbolic.numeric.identify.evidence import recording
-from ptp_symbolic.numeric.identify.work import Allowance
+from ptp_symbolic.numeric.identify.evidence import Allowance, recording
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.workflows.against_black_box import against_black_box
 from ptp_symbolic.workflows.preparation import look_at, workers

@@ -104,25 +104,25 @@ RULES = (
     Rule(
         "significant",
         "What a member gains is significant at 5 %, over all that was looked at.",
-        _in("findings", "FALSE_ALARM"),
+        _in("seeker", "FALSE_ALARM"),
         np.inf,
     ),
     Rule(
         "most beside a remainder",
         "Where more than noise remains, a member surely explains more of the error than remains.",
-        _in("gain", "MOST"),
-        -np.inf,
+        _in("gain", "Gain.is_most"),
+        True,
     ),
     Rule(
         "in innovations",
         "Where more than noise remains, a member reduces more than slow drift.",
-        _in("confirmed_sets", "gain_in_innovations"),
+        _in("confirm", "gain_in_innovations"),
         _always(CERTAIN),
     ),
     Rule(
         "not the noise of the inputs",
         "Without a member, more is left than the noise of the inputs leaves.",
-        _in("confirmed_sets", "leaves_noise_of_inputs"),
+        _in("confirm", "leaves_noise_of_inputs"),
         _always(False),
     ),
     Rule(
@@ -146,7 +146,7 @@ RULES = (
     Rule(
         "bounds",
         "No parameter of a member ends on a bound.",
-        (*_in("confirm", "at_bound"), *_in("confirmed_sets", "at_bound")),
+        _in("confirm", "at_bound"),
         _always(None),
     ),
     Rule(
@@ -158,7 +158,7 @@ RULES = (
     Rule(
         "law of the speed",
         "The torque of a member goes with the speed as its law says.",
-        (*_in("confirmed_sets", "breaks_its_law"), *_in("along_rows", "breaks_its_law")),
+        (*_in("confirm", "breaks_its_law"), *_in("along_rows", "breaks_its_law")),
         _always(False),
     ),
     Rule(
@@ -166,7 +166,7 @@ RULES = (
         "The inputs move the fitted model by more than it leaves.",
         tuple(
             place
-            for module in ("confirmed_sets", "structures", "along_rows")
+            for module in ("confirm", "structures", "along_rows")
             for place in _in(module, "answers_to_inputs")
         ),
         _always(True),
@@ -237,19 +237,19 @@ RULES = (
     Rule(
         "windows alike",
         "Validation windows leave no more than training windows do (ranks, 0.1 %).",
-        _in("held_out", "UNALIKE"),
+        _in("gain", "UNALIKE"),
         -1.0,
     ),
     Rule(
         "no run far off",
         "No validation run leaves more than eight times its noise.",
-        _in("held_out", "NEARBY"),
+        _in("gain", "NEARBY"),
         np.inf,
     ),
     Rule(
         "colour of the noise",
         "The noise floor has the autocorrelation of the residual, as far as rests and runs allow.",
-        _in("floor", "_of_its_colour"),
+        _in("noise_floor", "_of_its_colour"),
         _white,
     ),
     Rule(
@@ -285,7 +285,7 @@ RULES = (
     Rule(
         "simplest forms",
         "Every member has the simplest form that loses nothing clear and material.",
-        (*_in("search", "simplified"), *_in("confirmed_sets", "simplified")),
+        (*_in("search", "simplified"), *_in("confirm", "simplified")),
         _given(1),
     ),
     Rule(

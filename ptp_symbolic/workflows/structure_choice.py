@@ -10,12 +10,17 @@ from typing import Any
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import variants
 from ptp_symbolic.models.structures import Rebuilt, pairs, structures
-from ptp_symbolic.numeric.diagnose.findings import Search
-from ptp_symbolic.numeric.diagnose.floor import floor_of, leaves_noise_alone
-from ptp_symbolic.numeric.diagnose.gain import Gain, gain
+from ptp_symbolic.numeric.diagnose.gain import (
+    Gain,
+    gain,
+    held_out_gain,
+    is_borne_out,
+    simulated_freely,
+)
 from ptp_symbolic.numeric.diagnose.groups import Rival, confusable, is_clearly_more
-from ptp_symbolic.numeric.diagnose.held_out import held_out_gain, is_borne_out, simulated_freely
+from ptp_symbolic.numeric.diagnose.noise_floor import floor_of, leaves_noise_alone
 from ptp_symbolic.numeric.diagnose.search import search
+from ptp_symbolic.numeric.diagnose.seeker import Search
 from ptp_symbolic.numeric.diagnose.structures import (
     FittedStructure,
     alternatives,

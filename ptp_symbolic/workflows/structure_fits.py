@@ -17,7 +17,7 @@ from ptp_symbolic.numeric.diagnose.structures import (
     misfit,
 )
 from ptp_symbolic.numeric.diagnose.trial import side_by_side
-from ptp_symbolic.numeric.identify.work import Allowance
+from ptp_symbolic.numeric.identify.evidence import Allowance
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.workflows.preparation import model_of, task_for
 from ptp_symbolic.workflows.result import Progress

@@ -18,13 +18,13 @@ from ptp_symbolic.numeric.diagnose import along_rows, search, structures
 from ptp_symbolic.numeric.diagnose.proposals import in_rows_of, propose
 from ptp_symbolic.numeric.diagnose.trial import Task
 from ptp_symbolic.numeric.identify.evidence import (
+    Allowance,
     Entry,
     Evidence,
     NotStoredError,
     key_of,
     recording,
 )
-from ptp_symbolic.numeric.identify.work import Allowance
 from ptp_symbolic.platform import Platform, read_platform
 from ptp_symbolic.workflows import structure_choice, structure_fits
 from ptp_symbolic.workflows.diagnosis import SAMPLES

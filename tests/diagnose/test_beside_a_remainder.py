@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.confirmed_sets import _doubt_beside_a_remainder
-from ptp_symbolic.numeric.diagnose.findings import Step
+from ptp_symbolic.numeric.diagnose.confirm import _doubt_beside_a_remainder
 from ptp_symbolic.numeric.diagnose.gain import gain
+from ptp_symbolic.numeric.diagnose.seeker import Step
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.straight import finished

@@ -15,8 +15,8 @@ from ptp_symbolic.numeric.diagnose.confirm import (
     unstable_without,
     why_unconfirmed,
 )
-from ptp_symbolic.numeric.diagnose.findings import is_earned, looked_at
 from ptp_symbolic.numeric.diagnose.gain import Gain, p_value
+from ptp_symbolic.numeric.diagnose.seeker import is_earned, looked_at
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.constants import FALSE_ALARM
 from ptp_symbolic.numeric.identify.coordinates import free_parameter

@@ -9,10 +9,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from ptp_symbolic.numeric.diagnose.cut_runs import in_windows_of
-from ptp_symbolic.numeric.diagnose.declared_fit import led_over_windows
-from ptp_symbolic.numeric.diagnose.errors import windows_of
-from ptp_symbolic.numeric.diagnose.left_over import left_over
+from ptp_symbolic.numeric.diagnose.noise_floor import left_over
 from ptp_symbolic.numeric.diagnose.proposals import Proposals
+from ptp_symbolic.numeric.diagnose.refits import led_over_windows
+from ptp_symbolic.numeric.diagnose.summary import windows_of
 from ptp_symbolic.numeric.diagnose.trial import Task, fitted
 from ptp_symbolic.numeric.identify.constants import ITERATIONS
 from ptp_symbolic.numeric.identify.coordinates import free_parameter

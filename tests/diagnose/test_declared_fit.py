@@ -6,15 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose.declared_fit import (
-    as_fitted_alone,
-    better_over_same_runs,
-    over_whole_runs,
-)
-from ptp_symbolic.numeric.diagnose.findings import Search, Tried
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise
+from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
+from ptp_symbolic.numeric.diagnose.refits import better_over_same_runs, over_whole_runs
+from ptp_symbolic.numeric.diagnose.seeker import Search, Tried
 from ptp_symbolic.numeric.diagnose.trial import fitted
+from ptp_symbolic.numeric.diagnose.verdict import as_fitted_alone
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.diagnosis import diagnose_platform
 from ptp_symbolic.workflows.fit import fit_platform

@@ -5,10 +5,10 @@ from pathlib import Path
 import pytest
 
 from ptp_symbolic.numeric.data import Log
-from ptp_symbolic.numeric.diagnose.confirmed_sets import denied
-from ptp_symbolic.numeric.diagnose.declared_fit import over_whole_runs
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise
+from ptp_symbolic.numeric.diagnose.confirm import denied
+from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
+from ptp_symbolic.numeric.diagnose.refits import over_whole_runs
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import fitted
 from tests.diagnose.spring_table import STIFFNESS, log, table_of

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose import left_over
-from ptp_symbolic.numeric.diagnose.floor import floor_of
-from ptp_symbolic.numeric.diagnose.left_over import (
+from ptp_symbolic.numeric.diagnose import noise_floor
+from ptp_symbolic.numeric.diagnose.noise_floor import (
     carried_noise,
     fitted_to_every_sample,
+    floor_of,
     is_thinned,
     with_every_residual,
     with_fewer_samples,
@@ -40,7 +40,7 @@ def task() -> Iterator[Task]:
     runs = (coarse, second)
     none: tuple[tuple[Run, ...], ...] = ()
     with ThreadPoolExecutor(2) as executor, pytest.MonkeyPatch.context() as patched:
-        patched.setattr(left_over, "SEARCH_PERIOD", 0.02)
+        patched.setattr(noise_floor, "SEARCH_PERIOD", 0.02)
         yield with_fewer_samples(
             Task(
                 MODEL,

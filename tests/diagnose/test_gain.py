@@ -8,8 +8,13 @@ import pytest
 from scipy import special, stats
 from scipy.signal import lfilter
 
-from ptp_symbolic.numeric.diagnose.gain import Gain, compared, gain, gain_in_innovations
-from ptp_symbolic.numeric.diagnose.held_out import held_out_gain
+from ptp_symbolic.numeric.diagnose.gain import (
+    Gain,
+    compared,
+    gain,
+    gain_in_innovations,
+    held_out_gain,
+)
 from ptp_symbolic.numeric.diagnose.trial import TUNING, Trial
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.curves import Floats

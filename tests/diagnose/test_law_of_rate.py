@@ -11,8 +11,7 @@ from ptp_symbolic.numeric.data import Log
 from ptp_symbolic.numeric.diagnose import along_rows
 from ptp_symbolic.numeric.diagnose.along_rows import _Motion, grown_along_motion
 from ptp_symbolic.numeric.diagnose.confirm import breaks_its_law
-from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
-from ptp_symbolic.numeric.diagnose.proposals import propose, start_for
+from ptp_symbolic.numeric.diagnose.proposals import declared_start, propose, start_for
 from ptp_symbolic.numeric.diagnose.trial import fitted
 from tests.diagnose.spring_table import (
     COUNT,

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from ptp_symbolic.numeric.diagnose import left_over as module
-from ptp_symbolic.numeric.diagnose.confirmed_sets import _examined
-from ptp_symbolic.numeric.diagnose.left_over import Carried, bound_of, carried_noise, left_over
+from ptp_symbolic.numeric.diagnose import noise_floor as module
+from ptp_symbolic.numeric.diagnose.confirm import _examined
+from ptp_symbolic.numeric.diagnose.noise_floor import Carried, bound_of, carried_noise, left_over
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, TEST_ALARM

@@ -8,10 +8,10 @@ from scipy.integrate import solve_ivp
 
 from ptp_symbolic.numeric.data import Log
 from ptp_symbolic.numeric.diagnose import search as roads
-from ptp_symbolic.numeric.diagnose.declared_fit import over_whole_runs
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise
+from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
-from ptp_symbolic.numeric.diagnose.search import at_lines_of_outputs
+from ptp_symbolic.numeric.diagnose.refits import over_whole_runs
+from ptp_symbolic.numeric.diagnose.responses import at_lines_of_outputs
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.identify.constants import CYCLES_APART
 from tests.diagnose.spring_table import (

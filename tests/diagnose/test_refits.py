@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose.declared_fit import _led_back, beside_declared, declared_from
-from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
-from ptp_symbolic.numeric.diagnose.left_over import Carried
+from ptp_symbolic.numeric.diagnose.noise_floor import Carried, leaves_white_noise
 from ptp_symbolic.numeric.diagnose.refits import (
+    _led_back,
     _with_strays_begun_anew,
+    beside_declared,
+    declared_from,
     is_near_floor,
     started_anew,
     strayed_from_start,
@@ -19,7 +20,7 @@ from ptp_symbolic.numeric.diagnose.refits import (
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted
 from ptp_symbolic.numeric.identify.constants import SHORT
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
-from ptp_symbolic.numeric.identify.run_starts import linked
+from ptp_symbolic.numeric.identify.fit import linked
 from ptp_symbolic.numeric.identify.windows import split_run
 from tests.identify.pan_runs import COUNT, FLOOR, KNOWN, MODEL, THREE, TRUTH, make_runs
 from tests.independent.pan_drive import PanDrive

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.floor import Floor
 from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.groups import Rival, _comes_near, overtaking, unrefuted
-from ptp_symbolic.numeric.diagnose.left_over import Carried
+from ptp_symbolic.numeric.diagnose.noise_floor import Carried, Floor
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from tests.identify.straight import finished
 

@@ -8,8 +8,8 @@ import pytest
 from ptp_symbolic.numeric.diagnose import verdict
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.confirm import why_unconfirmed
-from ptp_symbolic.numeric.diagnose.findings import is_earned
 from ptp_symbolic.numeric.diagnose.gain import Gain
+from ptp_symbolic.numeric.diagnose.seeker import is_earned
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from ptp_symbolic.workflows.rules import RULES, Rule, switched_off, table
 from tests.identify.straight import finished

@@ -8,14 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose.declared_fit import declared_from, fit_declared
-from ptp_symbolic.numeric.diagnose.findings import worth_keeping
 from ptp_symbolic.numeric.diagnose.gain import gain
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise
+from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
+from ptp_symbolic.numeric.diagnose.refits import declared_from, fit_declared, taken_over
 from ptp_symbolic.numeric.diagnose.search import by_effects_alone, extended
-from ptp_symbolic.numeric.diagnose.seeker import Seeker, simplified
-from ptp_symbolic.numeric.diagnose.starts import taken_over
+from ptp_symbolic.numeric.diagnose.seeker import Seeker, simplified, worth_keeping
 from ptp_symbolic.numeric.diagnose.trial import Trial, fitted
 from ptp_symbolic.numeric.identify.constants import MOST
 from tests.diagnose.spring_table import DAMPING, INERTIA, MASS, PAYLOAD, STIFFNESS, spring_table

@@ -10,17 +10,15 @@ import pytest
 
 from ptp_symbolic.numeric.diagnose import search as roads
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.declared_fit import over_whole_runs
-from ptp_symbolic.numeric.diagnose.findings import Step
 from ptp_symbolic.numeric.diagnose.gain import gain
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise
+from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import Proposal, propose, start_for
-from ptp_symbolic.numeric.diagnose.refits import is_near_floor
+from ptp_symbolic.numeric.diagnose.refits import is_near_floor, over_whole_runs
 from ptp_symbolic.numeric.diagnose.search import floated
-from ptp_symbolic.numeric.diagnose.seeker import Seeker
+from ptp_symbolic.numeric.diagnose.seeker import Seeker, Step
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted
 from ptp_symbolic.numeric.identify.constants import TRIED
-from ptp_symbolic.numeric.identify.work import Allowance
+from ptp_symbolic.numeric.identify.evidence import Allowance
 from tests.diagnose.spring_table import STIFFNESS, spring_table
 
 STUCK = 1.0002

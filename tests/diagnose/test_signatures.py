@@ -5,9 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose.linear import projected_off
 from ptp_symbolic.numeric.diagnose.proposals import Proposals, propose
 from ptp_symbolic.numeric.diagnose.regression import remainder
+from ptp_symbolic.numeric.diagnose.responses import projected_off
 from tests.diagnose.spring_table import spring_table
 
 

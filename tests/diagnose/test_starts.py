@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose import search, starts
+from ptp_symbolic.numeric.diagnose import refits, search
 from ptp_symbolic.numeric.diagnose.candidates import FAR_OFF
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise
+from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Trial, fitted
@@ -49,9 +49,9 @@ def test_fits_begin_in_the_other_valleys_the_deepest_first(
 
         there = simulated_at(None, trial.fit, {"b_pan": own})
         trial = replace(trial, fit=replace(trial.fit, evaluations=tuple(there)))
-        monkeypatch.setattr(starts, "untold", lambda _: [damping, replace(damping, start=0.0)])
-        monkeypatch.setattr(starts, "simulated_at", simulated_at)
-        begun = starts.from_far_off(task, proposals, trial)
+        monkeypatch.setattr(refits, "untold", lambda _: [damping, replace(damping, start=0.0)])
+        monkeypatch.setattr(refits, "simulated_at", simulated_at)
+        begun = refits.from_far_off(task, proposals, trial)
     found = [t.values["b_pan"] / START for t in begun]
     assert found == pytest.approx([1.0, 1.5**2, FAR_OFF, 1.0 / FAR_OFF], rel=1e-9)
     assert all(t.values["J_pan"] == trial.values["J_pan"] for t in begun)
@@ -66,10 +66,10 @@ def test_fits_begin_where_a_parameter_that_strayed_is_back(
     """Though every run has one place to begin from, and whatever it leaves."""
     with spring_table(tmp_path, stiffness=0.0) as task:
         proposals = propose(task)
-        monkeypatch.setattr(starts, "untold", lambda _: [])
+        monkeypatch.setattr(refits, "untold", lambda _: [])
         (damping,) = (f for f in task.free if f.name == "b_pan")
         there = proposals.start | {"b_pan": strayed * damping.start}
-        begun = starts.from_far_off(task, proposals, fitted(task, (), there, None))
+        begun = refits.from_far_off(task, proposals, fitted(task, (), there, None))
     found = [t.values["b_pan"] / damping.start for t in begun]
     assert found == pytest.approx(back, rel=1e-9)
 

@@ -9,7 +9,7 @@ import pytest
 from ptp_symbolic.models.structures import pairs, structures
 from ptp_symbolic.models.variants import extended
 from ptp_symbolic.numeric.data import log_files, read_logs
-from ptp_symbolic.numeric.identify.work import Allowance
+from ptp_symbolic.numeric.identify.evidence import Allowance
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.preparation import workers
 from ptp_symbolic.workflows.structure_fits import Logs, fit_structures

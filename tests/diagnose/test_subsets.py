@@ -11,19 +11,17 @@ from ptp_symbolic.numeric.diagnose import regression as regression_module
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.regression import (
     Regression,
-    regression,
-    remainder,
-    untold,
-)
-from ptp_symbolic.numeric.diagnose.signatures import Signature
-from ptp_symbolic.numeric.diagnose.subsets import (
     Subset,
     exchanges,
     gain_along_motion,
     is_no_worse,
     larger_sets,
     ranked_subsets,
+    regression,
+    remainder,
+    untold,
 )
+from ptp_symbolic.numeric.diagnose.signatures import Signature
 from ptp_symbolic.numeric.identify.constants import CYCLES, FAR, REPEATS
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.curves import Floats

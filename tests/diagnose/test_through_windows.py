@@ -10,11 +10,10 @@ import pytest
 
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.numeric.data import log_files, read_split_logs
-from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise, left_over
+from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise, left_over
 from ptp_symbolic.numeric.diagnose.proposals import propose
-from ptp_symbolic.numeric.diagnose.refits import to_its_end
-from ptp_symbolic.numeric.diagnose.through_windows import through_windows
+from ptp_symbolic.numeric.diagnose.refits import fit_declared, to_its_end
+from ptp_symbolic.numeric.diagnose.search import through_windows
 from ptp_symbolic.numeric.diagnose.trial import Task, fitted
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.preparation import effect_keys, task_for, workers

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
 from ptp_symbolic.numeric.diagnose.preparation import turned_inputs
 from ptp_symbolic.numeric.diagnose.proposals import propose
+from ptp_symbolic.numeric.diagnose.refits import fit_declared
 from tests.diagnose.spring_table import log, table_of
 
 

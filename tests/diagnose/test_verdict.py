@@ -9,21 +9,21 @@ import pytest
 from scipy import stats
 from scipy.signal import lfilter
 
-from ptp_symbolic.numeric.diagnose.confirmed_sets import doubtful
-from ptp_symbolic.numeric.diagnose.findings import Step
-from ptp_symbolic.numeric.diagnose.floor import (
-    Floor,
-    floor_of,
-    leaves_noise_alone,
-    leaves_noise_of_inputs,
-)
-from ptp_symbolic.numeric.diagnose.held_out import (
+from ptp_symbolic.numeric.diagnose.confirm import doubtful
+from ptp_symbolic.numeric.diagnose.gain import (
     chance_of_larger,
     held_out_gain,
     is_borne_out,
     is_quiet,
 )
-from ptp_symbolic.numeric.diagnose.left_over import Carried
+from ptp_symbolic.numeric.diagnose.noise_floor import (
+    Carried,
+    Floor,
+    floor_of,
+    leaves_noise_alone,
+    leaves_noise_of_inputs,
+)
+from ptp_symbolic.numeric.diagnose.seeker import Step
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.diagnose.verdict import (
     EXPLAINED,

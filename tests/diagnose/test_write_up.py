@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.models.structures import structures
-from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
-from ptp_symbolic.numeric.diagnose.floor import Floor
-from ptp_symbolic.numeric.diagnose.left_over import Carried
+from ptp_symbolic.numeric.diagnose.noise_floor import Carried, Floor
+from ptp_symbolic.numeric.diagnose.proposals import declared_start
 from ptp_symbolic.numeric.diagnose.trial import fitted
 from ptp_symbolic.platform import ParameterDeclaration, Platform, SignalDeclaration, read_platform
 from ptp_symbolic.workflows.write_up import (

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose.held_out import left_by_best_values
+from ptp_symbolic.numeric.diagnose.gain import left_by_best_values
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, free_parameter
 from ptp_symbolic.numeric.identify.evaluate import evaluate
 from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
@@ -18,9 +18,9 @@ from ptp_symbolic.numeric.identify.intervals import (
     estimates,
     project_out,
 )
-from ptp_symbolic.numeric.identify.replays import estimable, with_input_noise
+from ptp_symbolic.numeric.identify.least_squares import Effort
 from ptp_symbolic.numeric.identify.run import with_inputs
-from ptp_symbolic.numeric.identify.simulations import Effort
+from ptp_symbolic.numeric.identify.windows import estimable, with_input_noise
 from ptp_symbolic.numeric.simulation.signals.inputs import constant, stack, table
 from tests.identify.curves import Floats
 from tests.identify.straight import finished

@@ -20,13 +20,22 @@ from ptp_symbolic.numeric.diagnose.candidates import (
     without_member,
 )
 from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, breaks_its_law, why_unconfirmed
-from ptp_symbolic.numeric.diagnose.declared_rows import equation_space, possible
-from ptp_symbolic.numeric.diagnose.findings import looked_at
-from ptp_symbolic.numeric.diagnose.gain import Gain, compared
-from ptp_symbolic.numeric.diagnose.held_out import simulated_freely
-from ptp_symbolic.numeric.diagnose.proposals import Proposals, in_rows_of, start_of
-from ptp_symbolic.numeric.diagnose.regression import Regression, block_numbers
-from ptp_symbolic.numeric.diagnose.subsets import exchanges, gain_along_motion, larger_sets
+from ptp_symbolic.numeric.diagnose.gain import Gain, compared, simulated_freely
+from ptp_symbolic.numeric.diagnose.proposals import (
+    Proposals,
+    equation_space,
+    in_rows_of,
+    possible,
+    start_of,
+)
+from ptp_symbolic.numeric.diagnose.regression import (
+    Regression,
+    block_numbers,
+    exchanges,
+    gain_along_motion,
+    larger_sets,
+)
+from ptp_symbolic.numeric.diagnose.seeker import looked_at
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, all_free
 from ptp_symbolic.numeric.identify.constants import FAR, LARGEST, TRIED
 from ptp_symbolic.numeric.identify.coordinates import slopes, to_search
@@ -34,8 +43,8 @@ from ptp_symbolic.numeric.identify.equation_fit import fit_equations, linearised
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
 from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.least_squares import POLISH
 from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.identify.simulations import POLISH
 
 FloatArray = NDArray[np.float64]
 

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.data.latency import IntArray, after_lost, parted
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.left_over import left_over
+from ptp_symbolic.numeric.diagnose.noise_floor import left_over
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
@@ -28,6 +28,7 @@ from ptp_symbolic.numeric.diagnose.trial import (
     fitted,
     is_alike,
 )
+from ptp_symbolic.numeric.identify.blocks import MANY_RUNS, weighted_median
 from ptp_symbolic.numeric.identify.constants import (
     CYCLES,
     ITERATIONS,
@@ -39,11 +40,9 @@ from ptp_symbolic.numeric.identify.constants import (
 )
 from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate, mean_squares
 from ptp_symbolic.numeric.identify.evidence import recorded
-from ptp_symbolic.numeric.identify.robust_loss import MANY_RUNS, weighted_median
-from ptp_symbolic.numeric.identify.run import Run, sizes, with_start
-from ptp_symbolic.numeric.identify.run_starts import has_linked, linked, starts_in_place
-from ptp_symbolic.numeric.identify.sample_averages import samples_within, thinned
-from ptp_symbolic.numeric.identify.simulations import POLISH
+from ptp_symbolic.numeric.identify.fit import has_linked, linked, starts_in_place
+from ptp_symbolic.numeric.identify.least_squares import POLISH
+from ptp_symbolic.numeric.identify.run import Run, samples_within, sizes, thinned, with_start
 from ptp_symbolic.numeric.identify.windows import (
     cut,
     cut_where_errors_grow,

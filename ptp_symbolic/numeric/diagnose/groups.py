@@ -19,21 +19,22 @@ from ptp_symbolic.numeric.diagnose.candidates import (
     with_what_needs_it,
     without_member,
 )
-from ptp_symbolic.numeric.diagnose.floor import Floor, floor_of, leaves_noise_of_inputs
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain
-from ptp_symbolic.numeric.diagnose.linear import (
+from ptp_symbolic.numeric.diagnose.noise_floor import Floor, floor_of, leaves_noise_of_inputs
+from ptp_symbolic.numeric.diagnose.proposals import Proposals
+from ptp_symbolic.numeric.diagnose.refits import in_place, is_near_floor, started_anew
+from ptp_symbolic.numeric.diagnose.responses import (
+    Columns,
     canonical_correlation,
     effect_of,
+    least,
     projected_off,
+    response_columns,
     stacked_jacobian,
     stacked_residual,
 )
-from ptp_symbolic.numeric.diagnose.proposals import Proposals
-from ptp_symbolic.numeric.diagnose.refits import is_near_floor, started_anew
-from ptp_symbolic.numeric.diagnose.responses import Columns, least, response_columns
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.signatures import Signature
-from ptp_symbolic.numeric.diagnose.starts import in_place
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,

@@ -1,17 +1,49 @@
-"""Refits of a set by simulation: over short windows first, then whole runs, at last to the end."""
+"""Refits of a set by simulation: over short windows first, then whole runs, at last to the end.
 
-from collections.abc import Mapping, Sequence
+Where refits by simulation begin: at what the rows or the outputs ask for, and beside it.
+
+The declared model fitted to the training runs: to whole ones, or led there over windows.
+
+The declared model and the sets that contain it: neither is stuck where the other shows a way.
+
+A set fits no worse than the declared model, which it contains, and what it gains is only worth a
+name where the declared model had the same chance.
+"""
+
+import math
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import FAR_OFF, Candidate
-from ptp_symbolic.numeric.diagnose.cut_runs import settled, shares_of_usual, starts_of
-from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
-from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise, left_over
-from ptp_symbolic.numeric.diagnose.linear import (
+from ptp_symbolic.numeric.diagnose.cut_runs import (
+    growing,
+    in_windows,
+    in_windows_of,
+    led_through,
+    parted_task,
+    settled,
+    shares_of_usual,
+    starts_of,
+    takes_away_most,
+    validation_in_windows,
+)
+from ptp_symbolic.numeric.diagnose.gain import gain
+from ptp_symbolic.numeric.diagnose.noise_floor import (
+    Carried,
+    carried_noise,
+    leaves_white_noise,
+    left_over,
+    with_fewer_samples,
+)
+from ptp_symbolic.numeric.diagnose.proposals import Proposal, Proposals, declared_start, start_for
+from ptp_symbolic.numeric.diagnose.regression import untold
+from ptp_symbolic.numeric.diagnose.responses import (
+    Response,
     effect_of,
+    made_up_for,
     projected_off,
     stacked_jacobian,
     stacked_residual,
@@ -20,18 +52,26 @@ from ptp_symbolic.numeric.diagnose.trial import (
     SHARP,
     Task,
     Trial,
+    all_free,
     continued,
     fitted,
     halving,
     is_alike,
+    is_near,
+    misfits,
     ranked,
+    side_by_side,
+    simulated_at,
 )
 from ptp_symbolic.numeric.identify.constants import (
     ABOVE_NOISE,
     CYCLES,
     FORGOTTEN,
+    ITERATIONS,
+    MOST,
     NEARBY,
     ROUGH,
+    SCREENED,
     STEP,
     TRIED,
     TUNING,
@@ -39,9 +79,8 @@ from ptp_symbolic.numeric.identify.constants import (
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.evidence import recorded
-from ptp_symbolic.numeric.identify.fit import Fit
-from ptp_symbolic.numeric.identify.run_starts import has_linked
-from ptp_symbolic.numeric.identify.simulations import POLISH
+from ptp_symbolic.numeric.identify.fit import Fit, has_linked
+from ptp_symbolic.numeric.identify.least_squares import POLISH
 
 FloatArray = NDArray[np.float64]
 
@@ -255,3 +294,275 @@ def fullest(task: Task, candidate: Candidate) -> Candidate:
     """The form of a candidate with the most parameters."""
     best = max(forms(task, candidate), key=lambda c: len(c.free))
     return best if len(best.free) > len(candidate.free) else candidate
+
+
+def started(task: Task, declared: Trial, sets: Sequence[Proposal]) -> list[Trial]:
+    """The proposed sets that do best over short windows, each at the better of two starts: where
+    the windows lead, and beside the declared model.
+    """
+    part = replace(task, train=task.few)
+
+    def short_fit(proposal: Proposal) -> Trial:
+        values, run = proposal.values, task.executor
+        return fitted(part, proposal.candidates, values, None, ITERATIONS, executor=run)
+
+    def at_better_start(short: Trial) -> Trial:
+        own = {name for c in short.candidates for name in c.names}
+        beside = declared.values | {name: short.values[name] for name in own}
+        starts = [
+            _begun(task, short.candidates, short.values, None),
+            _begun(task, short.candidates, beside, declared.fit),
+        ]
+        return ranked(starts)[0]
+
+    return side_by_side(at_better_start, ranked(side_by_side(short_fit, sets))[:TRIED])
+
+
+def along(task: Task, proposals: Proposals, found: Response, parent: Trial) -> list[Trial]:
+    """Refits begun where a response in the outputs leads from `parent`, and part of the way there.
+    What the motion does not show has derivatives that mislead: they are looked for at once.
+    """
+    proposal = found.proposal
+    origin = parent.values | dict(found.shape)
+    begun = []
+    for part in (1.0, MOST):
+        values = {n: origin[n] + part * (v - origin[n]) for n, v in proposal.values.items()}
+        begun.append(_begun(task, proposal.candidates, values, parent.fit))
+    if found.candidate.key not in {c.key for c in proposals.unseen}:
+        return [ranked(begun)[0]]
+    return [continued(task, t, 1, secants=WIDE_STEP, executor=task.executor) for t in begun]
+
+
+def from_rows(
+    task: Task, proposals: Proposals, candidates: Sequence[Candidate], values: Mapping[str, float]
+) -> list[Trial]:
+    """A set where the rows start it (what they do not show stays at `values`), and where windows
+    lead from there and from the declared start.
+    """
+    start = start_for(task, proposals, candidates, values)
+    own = {name: start[name] for c in candidates for name in c.names}
+    begun = over_windows(task, candidates, [start, declared_start(task) | own])
+    return [*begun, _begun(task, candidates, start, None)]
+
+
+def taken_over(task: Task, kept: Sequence[Candidate], trial: Trial) -> list[Trial]:
+    """The declared model with some candidates `kept` of a trial, without the others: as they are,
+    and where they take over what the others did, by linear prediction; a limit is switched
+    off too far away for that.
+    """
+    dropped = [c for c in trial.candidates if c not in kept]
+    off = {name: task.fixed[name] for c in dropped for name in c.names}
+    values = trial.values | off
+    others = {f.name for f in all_free(task, kept, values)}
+    linear = [f for c in dropped for f in c.defining if not c.is_limit(f)]
+    vanishing = {f.name: off[f.name] for f in linear}
+    taken = _taken(trial.fit, vanishing, others) | off
+    starts = [values] if taken == values else [values, taken]
+    return side_by_side(lambda start: _begun(task, kept, start, trial.fit), starts)
+
+
+@recorded()
+def _taken(fit: Fit, vanishing: Mapping[str, float], others: Set[str]) -> dict[str, float]:
+    """See `made_up_for`."""
+    return made_up_for(fit, vanishing, others, stacked_jacobian(fit))
+
+
+def in_place(
+    task: Task, proposals: Proposals, candidates: Sequence[Candidate], trial: Trial
+) -> list[Trial]:
+    """A set like that of `trial`, where the rows start it, and where they start its candidates
+    alone.
+    """
+    start = start_for(task, proposals, candidates, trial.values)
+    beside = trial.values | {name: start[name] for c in candidates for name in c.names}
+    return [_begun(task, candidates, values, None) for values in (start, beside)]
+
+
+def far_starts(
+    free: Sequence[FreeParameter], values: Mapping[str, float]
+) -> list[dict[str, float]]:
+    """`values` with one of the parameters `free` after the other that begin above zero as far from
+    its start as that may be off: rows tell an inertia behind a gear by its share in the whole
+    alone, and fits that begin with a gap and too little of it end with none.
+    """
+    return [
+        {**values, **dict.fromkeys(f.names, inside(f, factor * f.start))}
+        for f in free
+        for factor in (FAR_OFF, 1.0 / FAR_OFF)
+        if f.start > 0.0
+    ]
+
+
+def from_far_off(task: Task, proposals: Proposals, trial: Trial) -> list[Trial]:
+    """A trial with one declared parameter that the rows do not tell far off, each of them in turn
+    (see `far_starts`), and in other valleys over it, the best first, not yet fitted: how a shaft
+    damps shows only as a gear bounces, and the misfit is rough in it. And with those that strayed
+    back where a start may be: noise alone may be left in these runs where they hardly matter.
+    """
+    rows = proposals.regression
+    free = [] if rows is None else [f for f in untold(rows) if f.start > 0.0]
+    valleys = [t for f in free for t in _valleys(task, trial, f)]
+    order = np.argsort(misfits([trial, *valleys])[1:])[:TRIED]
+    starts = [*(valleys[k].values for k in order), *far_starts(free, trial.values)]
+    begun = [_begun(task, trial.candidates, values, trial.fit) for values in starts]
+    return begun + strayed_back(task, trial)
+
+
+def _valleys(task: Task, trial: Trial, free: FreeParameter) -> list[Trial]:
+    """The trial, not fitted, where it leaves less at a value of one parameter, all others as they
+    are, than at the values beside it: half as much more at every step, at least as far from its
+    start as that may be off. Its own value is among the values, and not returned.
+    """
+    own, steps = trial.values[free.name], math.ceil(math.log(FAR_OFF) / math.log(1.0 + MOST))
+    spread = free.start * (1.0 + MOST) ** np.arange(-steps, steps + 1)
+    amounts = sorted({own, *(inside(free, a) for a in spread)})
+    scanned = [trial if a == own else _moved(task, trial, free, a) for a in amounts]
+    cost = [np.inf, *misfits(scanned), np.inf]
+    return [
+        place
+        for place, before, here, after in zip(scanned, cost, cost[1:], cost[2:], strict=False)
+        if place is not trial and here < min(before, after)
+    ]
+
+
+def _moved(task: Task, trial: Trial, free: FreeParameter, amount: float) -> Trial:
+    """The trial with one parameter at another amount, not fitted, and without new Jacobians."""
+    values = trial.values | dict.fromkeys(free.names, amount)
+    evaluations = simulated_at(task, trial.fit, values)
+    return replace(trial, fit=replace(trial.fit, values=values, evaluations=evaluations))
+
+
+def _begun(
+    task: Task,
+    candidates: Sequence[Candidate],
+    values: Mapping[str, float],
+    parent: Fit | None,
+) -> Trial:
+    """A set at some values, not yet fitted; its runs begin where those of the parent did, or else
+    at their guesses.
+    """
+    z = None if parent is None else parent.z
+    return fitted(task, candidates, values, z, 0, parent, executor=task.executor)
+
+
+def beside_declared(task: Task, trial: Trial, declared: Trial, carried: Carried) -> Trial:
+    """A trial that fits worse than the declared model, begun anew beside that, its effects as they
+    are or at their vanishing values; `carried` as in `Search`.
+    """
+    own = {name: trial.values[name] for c in trial.candidates for name in c.names}
+    off = {n: c.vanishing[f.name] for c in trial.candidates for f in c.defining for n in f.names}
+    begun = [
+        fitted(task, trial.candidates, values, declared.fit.z, 0, declared.fit)
+        for values in (declared.values | own, declared.values | own | off)
+    ]
+    left = halving(task, begun, 1)
+    return ranked([trial, *(polished(task, t, carried) for t in left)])[0]
+
+
+def declared_from(task: Task, trial: Trial, declared: Trial, carried: Carried) -> Trial | None:
+    """The declared model fitted from where a trial ended, as it is and where it takes over what the
+    effects did; None unless that is materially better than `declared`, which was in a local minimum
+    then.
+    """
+    left = halving(task, taken_over(task, (), trial), 1)
+    again = [polished(task, t, carried) for t in left if is_near(t, [declared])]
+    best = ranked([declared, *again])[0]
+    return best if gain(best, declared).share >= task.material else None
+
+
+def fit_declared(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
+    """The declared model fitted to whole runs, and over windows where that leaves more than white
+    noise; and the task with windows for runs that ask for them.
+    """
+    if not task.windows:
+        return led_over_windows(task, proposals)
+    part, trial = over_whole_runs(task, proposals)
+    if leaves_white_noise(trial, carried_noise(part, trial.fit)):
+        return part, trial
+    part, led = led_over_windows(task, proposals)
+    return part, better_over_same_runs(trial, led)
+
+
+def better_over_same_runs(before: Trial, led: Trial) -> Trial:
+    """The declared model where windows have `led` it, or where it was before if that is better:
+    what begins better does not always end so. What leaves other runs cannot be compared.
+    """
+    names = [[run.name for run in trial.fit.runs] for trial in (before, led)]
+    return ranked([before, led])[0] if names[0] == names[1] else led
+
+
+def over_whole_runs(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
+    """The declared model fitted to whole runs from the rows' start and from the declared one; the
+    task as in `led_over_windows`.
+    """
+    starts = [proposals.start, declared_start(task)]
+    run = task.executor
+    begun = [fitted(task, (), values, None, executor=run) for values in starts]
+    best = halving(task, begun, 1) or begun[-1:]
+    return _in_windows_of_its_own(task, polished(task, best[0], carried_noise(task, best[0].fit)))
+
+
+def led_over_windows(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
+    """The declared model, from where windows lead from the rows' start and from the declared one,
+    and from those two themselves; where runs are windows already, from starts far off too, and from
+    where shorter ones lead. And the task with windows for runs that multiply small errors (see
+    `in_windows`), which would lead the fit astray.
+    """
+    starts = [proposals.start, declared_start(task)]
+    spread = far_starts(task.free, proposals.start) if has_rough_starts(task) else []
+    begun = over_windows(task, (), starts, spread)
+    if begun:
+        part = in_windows(task, begun[0])
+        if part is not task:
+            task, led = part, fitted(part, (), begun[0].values, None)
+            begun = [settled(task, led, task.executor)]
+    begun += [fitted(task, (), values, None, executor=task.executor) for values in starts]
+    if not task.windows:
+        far = [fitted(task, (), values, None, executor=task.executor) for values in spread]
+        begun += halving(task, far, SCREENED)
+        begun.append(fitted(task, (), led_through(growing(task), (), proposals.start), None))
+    best = halving(task, begun, 1) or begun[-1:]
+    return _in_windows_of_its_own(task, polished(task, best[0], carried_noise(task, best[0].fit)))
+
+
+def _in_windows_of_its_own(task: Task, trial: Trial) -> tuple[Task, Trial]:
+    """The task with its runs parted and cut where the declared model asks for it, and the trial
+    refitted there. The length of windows was chosen at the start values, which may multiply fewer
+    errors than the fitted ones: what these leave may seem to be noise of the inputs, which can push
+    a simulation to the other side of a rest.
+    """
+    task, trial = _where_most_goes(parted_task(task, trial), task, trial)
+    part = in_windows(task, trial)
+    if part is not task:
+        short = refitted_in(part, trial)
+        if np.all(left_over(short.fit) <= left_over(trial.fit)):
+            task, trial = part, short
+    if not task.windows and np.any(left_over(trial.fit) > ABOVE_NOISE):
+        part = in_windows_of(task, trial)
+        if part is not task:
+            part = with_fewer_samples(part, trial.values)
+            task, trial = _where_most_goes(part, task, trial)
+    trial = _led_back(task, trial)
+    return validation_in_windows(task, trial), trial
+
+
+def _led_back(task: Task, trial: Trial) -> Trial:
+    """The declared model, or a better end from where parameters that have strayed are back where a
+    start may be (see `begun_anew`), if some iterations gain materially: one that went where it does
+    nothing has no derivative that leads back, and what makes up for it is no effect.
+    """
+    strayed = strayed_from_start(task, trial.values)
+    if not strayed or (is_near_floor(trial) and not trial.fit.failed):
+        return trial
+    left = halving(task, begun_anew(task, trial), 1)
+    if not left or not (trial.fit.failed or gain(left[0], trial).share >= task.material):
+        return trial
+    return polished(task, left[0], carried_noise(task, left[0].fit))
+
+
+def _where_most_goes(part: Task, task: Task, trial: Trial) -> tuple[Task, Trial]:
+    """The task in parts and the trial refitted there, if that takes away most of what is left."""
+    if part is task:
+        return task, trial
+    short = refitted_in(part, trial)
+    return (part, short) if takes_away_most(short, trial) else (task, trial)

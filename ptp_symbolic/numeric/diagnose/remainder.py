@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy import stats
 from scipy.signal import lombscargle
 
-from ptp_symbolic.numeric.diagnose.linear import projected_off
+from ptp_symbolic.numeric.diagnose.responses import projected_off
 from ptp_symbolic.numeric.identify.constants import (
     BINS,
     CYCLES_APART,

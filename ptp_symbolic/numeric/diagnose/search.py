@@ -8,169 +8,215 @@ in them. The outputs still know it: waves of all frequencies are simulated in tu
 
 Sets that grow and shrink by one candidate at a time: stepwise selection, of all candidates or of
 effects alone.
+
+Effects that act as friction lets go, led to where they fit through ever longer windows.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.cut_runs import in_windows_of, parted_task, takes_away_most
-from ptp_symbolic.numeric.diagnose.declared_fit import (
-    better_over_same_runs,
-    declared_from,
-    led_over_windows,
-    over_whole_runs,
+from ptp_symbolic.numeric.diagnose.candidates import Candidate, with_what_it_brings
+from ptp_symbolic.numeric.diagnose.cut_runs import (
+    growing,
+    in_windows_of,
+    led,
+    led_through,
+    parted_task,
+    settled,
+    takes_away_most,
 )
-from ptp_symbolic.numeric.diagnose.findings import Search, Step, step_of, worth_keeping
 from ptp_symbolic.numeric.diagnose.gain import gain
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise, with_fewer_samples
-from ptp_symbolic.numeric.diagnose.linear import projected_off, stacked_jacobian, stacked_residual
+from ptp_symbolic.numeric.diagnose.noise_floor import (
+    Carried,
+    carried_noise,
+    leaves_white_noise,
+    most_hidden,
+    with_fewer_samples,
+)
 from ptp_symbolic.numeric.diagnose.proposals import (
     Proposal,
     Proposals,
     placed_by_rows,
     propose,
 )
-from ptp_symbolic.numeric.diagnose.refits import is_near_floor, refitted_in
-from ptp_symbolic.numeric.diagnose.responses import response_columns
-from ptp_symbolic.numeric.diagnose.seeker import Seeker, simplified
-from ptp_symbolic.numeric.diagnose.signatures import at_line, axes_of, band
-from ptp_symbolic.numeric.diagnose.starts import from_far_off, started, taken_over
-from ptp_symbolic.numeric.diagnose.through_windows import each_through_windows
+from ptp_symbolic.numeric.diagnose.refits import (
+    better_over_same_runs,
+    declared_from,
+    from_far_off,
+    is_near_floor,
+    led_over_windows,
+    over_whole_runs,
+    refitted_in,
+    started,
+    taken_over,
+    to_its_end,
+)
+from ptp_symbolic.numeric.diagnose.responses import at_lines_of_outputs
+from ptp_symbolic.numeric.diagnose.seeker import (
+    Search,
+    Seeker,
+    Step,
+    simplified,
+    step_of,
+    worth_keeping,
+)
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
+    fitted,
     halving,
     is_near,
     misfits,
     ranked,
+    simulated,
 )
 from ptp_symbolic.numeric.identify.constants import (
-    CYCLES_APART,
+    ABOVE_NOISE,
+    AMOUNTS,
+    CYCLES,
     DEVIATIONS,
     LARGEST,
     MOST,
-    REACH,
-    ROWS_PER_WINDOW,
-    SCANNED,
     SCREENED,
 )
-from ptp_symbolic.numeric.identify.equation_space import EquationSpace, row_motion
-from ptp_symbolic.numeric.identify.evidence import recorded
-from ptp_symbolic.numeric.identify.work import Allowance
+from ptp_symbolic.numeric.identify.evaluate import mean_squares
+from ptp_symbolic.numeric.identify.evidence import Allowance, recorded
+from ptp_symbolic.numeric.identify.fit import Fit
 
 FloatArray = NDArray[np.float64]
 
 
-def at_lines_of_outputs(
-    task: Task, space: EquationSpace | None, trial: Trial, waves: Sequence[Candidate]
-) -> tuple[Candidate, ...]:
-    """Those of the candidates `waves` of which a line stands out in what a trial leaves of the
-    outputs, by linear prediction; at that line, in all their forms. None without the `space` of
-    rows, which tells how far to look; and none of a wave of which the rows tell all frequencies.
+def each_through_windows(
+    task: Task,
+    parent: Trial,
+    candidates: Sequence[Candidate],
+    carried: Carried,
+    *,
+    is_white: bool,
+) -> list[Trial]:
+    """The parent with each of `candidates` but declared values, where windows lead to it (see
+    `through_windows`); those alone that are reached in time.
     """
-    found: list[Candidate] = []
-    if space is None:
-        return ()
-    for key in dict.fromkeys(c.key for c in waves):
-        forms = [c for c in waves if c.key == key]
-        line = None if key in trial.keys else _line(task, space, trial, forms[0])
-        placed = [at_line(form, *line) for form in forms] if line is not None else []
-        found += [c for c in placed if c is not None]
-    return tuple(found)
+    wanted = {c.key: c for c in candidates if not c.is_declared_value}
+    led = [
+        through_windows(task, parent, c, carried, is_white=is_white)
+        for c in wanted.values()
+        if not task.is_over
+    ]
+    return [t for t in led if t is not None]
 
 
-def _line(
-    task: Task, space: EquationSpace, trial: Trial, candidate: Candidate
-) -> tuple[float, float, int] | None:
-    """The frequency of the strongest line of a candidate, in Hz or cycles per turn, the lowest that
-    is a line, and how many can be told from one another; None where none takes away a material
-    share, and twice what any other does: what drifts looks like many slow waves. And where there
-    are more rows, those that overlap counted once, than frequencies, or too many to simulate.
-
-    A step of half of what tells two apart dims a line between by a fifth; then it is looked for
-    beside the strongest.
+def through_windows(
+    task: Task, parent: Trial, candidate: Candidate, carried: Carried, *, is_white: bool
+) -> Trial | None:
+    """The parent with a candidate, fitted to whole runs from where windows lead it, and again as
+    long as that is a better place; None where it does not gain materially in a few windows.
+    `carried` is that of `leaves_white_noise`; `is_white`: the noise is known to be, since another
+    set leaves no more than that.
     """
-    span, usual, rows = _place(space, trial, candidate)
-    lowest, highest = band(space, candidate, span, usual)
-    apart = int((highest - lowest) * span)
-    if not rows / ROWS_PER_WINDOW < apart <= SCANNED:
+    few = growing(task, few=True)
+    hidden = 1.0 if is_white else most_hidden(task)
+    most = ABOVE_NOISE * np.hypot(hidden, carried.most)
+    candidates = with_what_it_brings(parent.candidates, candidate, task.candidates)
+    values = _first_lead(few, parent, candidates, most) if few else None
+    if values is None:
         return None
-    task.progress(f"simulating {candidate.key} at all frequencies, {apart} of which are resolved")
-    best = _strongest(task, trial, candidate, span, lowest, highest, task.material)
-    return None if best is None else (best, 0.9 * lowest, apart)
+    trial = to_its_end(task, fitted(task, candidates, values, None), carried)
+    parts = growing(task)
+    for _ in range(CYCLES):
+        if leaves_white_noise(trial, carried):
+            break
+        values = led_through(parts, candidates, trial.values)
+        again = to_its_end(task, fitted(task, candidates, values, None), carried)
+        if ranked([trial, again])[0] is trial:
+            break
+        trial = again
+    return trial
+
+
+def _first_lead(
+    parts: Sequence[Task], parent: Trial, candidates: Sequence[Candidate], most: FloatArray
+) -> Mapping[str, float] | None:
+    """Values where windows lead the last of `candidates`, with those that it brings along; None
+    where windows that it leaves as they are hold more than `most` [ny] times their noise, and where
+    it does not gain materially in the longest: each begins by itself, so that short ones leave
+    little of an effect that acts late.
+
+    It begins at the amount of its start, to which all others follow first: from where they make up
+    for it a search does not find back. And in every part at the best of several amounts, all others
+    as they are without it.
+    """
+    shortest, run = parts[0], parts[0].executor
+    alone = led(shortest, parent.candidates, parent.values)
+    added = candidates[len(parent.candidates) :]
+    shapes = added[-1].shapes
+    starts = [{**_amounts(added, 1.0), **shape} for shape in shapes]
+    if not any(_may_be_all(shortest, alone, start, most) for start in starts):
+        return None
+
+    def followed(start: Mapping[str, float]) -> Trial:
+        part = replace(shortest, fixed={**shortest.fixed, **start})
+        others = settled(
+            part, fitted(part, parent.candidates, {**alone.values, **start}, None), None, brief=True
+        )
+        return led(shortest, candidates, others.values)
+
+    with_it: list[Trial] = []
+    for part in parts:
+        if part is shortest:
+            jobs = [run.submit(followed, start) for start in starts]
+        else:
+            alone = led(part, parent.candidates, alone.values)
+            jobs = [run.submit(led, part, candidates, t.values) for t in with_it]
+        jobs += [run.submit(_scanned, part, alone, added, s) for s in shapes]
+        found = [job.result() for job in jobs]
+        with_it = [found[k] for k in np.argsort(misfits(found))[:SCREENED]]
+    cost = misfits([alone, with_it[0]])
+    least_change = sum(r.size for r in alone.fit.runs) * np.log(1.0 - shortest.material)
+    return with_it[0].values if cost[1] <= cost[0] + least_change else None
+
+
+def _scanned(
+    part: Task, alone: Trial, added: Sequence[Candidate], shape: Mapping[str, float]
+) -> Trial:
+    """A trial with the best of several amounts of what is added, of some `shape`, fitted on."""
+    candidates = (*alone.candidates, *added)
+    values = [{**alone.values, **_amounts(added, k), **shape} for k in AMOUNTS]
+    begun = [fitted(part, candidates, v, alone.fit.z) for v in values]
+    return led(part, candidates, ranked(begun)[0].values)
+
+
+def _amounts(candidates: Sequence[Candidate], factor: float) -> dict[str, float]:
+    """What switches candidates on, each at its start times a factor."""
+    return {
+        n: float(np.clip(factor * f.start, f.lower, f.upper))
+        for candidate in candidates
+        for f in candidate.defining
+        for n in f.names
+    }
+
+
+def _may_be_all(part: Task, alone: Trial, amounts: Mapping[str, float], most: FloatArray) -> bool:
+    """Whether a candidate at some `amounts` changes some windows, and those that it leaves as they
+    are hold no more than may be noise, at `most` [ny]: else they lack something besides.
+    """
+    changed = _changed(part, alone.fit, amounts)
+    fit = alone.fit
+    left = mean_squares(fit.evaluations, fit.runs)[np.logical_not(changed)]
+    usual = np.median(left, axis=0) if len(left) else np.zeros(left.shape[1])
+    return any(changed) and bool(np.all(np.sqrt(usual) <= most))
 
 
 @recorded()
-def _strongest(
-    task: Task,
-    trial: Trial,
-    candidate: Candidate,
-    span: float,
-    lowest: float,
-    highest: float,
-    material: float,
-) -> float | None:
-    """The frequency of the strongest line of `_line`, from the lowest to the highest, where it
-    takes away a `material` share.
-    """
-    away = stacked_jacobian(trial.fit)
-    residual = projected_off(stacked_residual(trial.fit)[:, None], away)[:, 0]
-
-    def left(frequency: float) -> float:
-        return _left(task, trial, candidate, frequency, residual, away)
-
-    steps = np.arange(lowest, highest, MOST / span)
-    shares = np.array(list(task.executor.map(left, steps)))
-    best = float(steps[int(np.argmin(shares))])
-    others = shares[np.abs(steps - best) > 1.0 / span]
-    close = np.clip(best + CYCLES_APART / span * np.array([-1.0, 0.0, 1.0]), lowest, highest)
-    shares = np.array(list(task.executor.map(left, close)))
-    taken, by_others = 1.0 - shares.min(), 1.0 - others.min(initial=1.0)
-    if taken < material or by_others > MOST * taken:
-        return None
-    return float(close[int(np.argmin(shares))])
-
-
-def _place(space: EquationSpace, trial: Trial, candidate: Candidate) -> tuple[float, float, int]:
-    """How far the place goes that a wave is locked to, in s or turns, how fast it usually goes as
-    it moves, per s (an axis without rows: 1 rad/s), and how many rows tell of it.
-    """
-    assert candidate.locked is not None
-    runs, own = trial.fit.runs, axes_of(space, candidate)
-    rows = int(np.isin(space.labels()[0], own).sum())
-    if candidate.locked[1] == "time":
-        return max(run.time[-1] for run in runs) - min(run.time[0] for run in runs), 1.0, rows
-    columns = [run.measured[:, run.signals.index(f"theta_{candidate.axis}")] for run in runs]
-    rate = np.abs(row_motion(space, own[0]).rate) if rows else np.ones(1)
-    turns = float(np.ptp(np.concatenate(columns))) / (2.0 * np.pi)
-    return turns, float(np.median(rate)) / (2.0 * np.pi), rows
-
-
-def _left(
-    task: Task,
-    trial: Trial,
-    candidate: Candidate,
-    frequency: float,
-    residual: FloatArray,
-    away: FloatArray,
-) -> float:
-    """Share of the square of a `residual` [n] that is left beside a wave of some frequency in any
-    of its shapes; both projected off the columns `away` [n, nf].
-    """
-    assert candidate.locked is not None
-    most = REACH * float(np.linalg.norm(residual))
-    shapes = [{**shape, candidate.locked[0]: frequency} for shape in candidate.shapes]
-    found = [response_columns(task, trial, candidate, shape, most) for shape in shapes]
-    tables = [columns.table for columns in found if columns is not None]
-    if not tables:
-        return 1.0
-    wave = projected_off(np.column_stack(tables), away)
-    rest = projected_off(residual[:, None], wave)
-    return float(np.sum(rest**2) / max(np.sum(residual**2), 1e-300))
+def _changed(part: Task, fit: Fit, amounts: Mapping[str, float]) -> list[bool]:
+    """Which windows of a fit a candidate changes at some `amounts`."""
+    return [
+        e.failed is not None or not np.array_equal(e.residual, before.residual)
+        for e, before in zip(simulated(part, fit, amounts, None), fit.evaluations, strict=True)
+    ]
 
 
 def extended(

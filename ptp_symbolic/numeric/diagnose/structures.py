@@ -11,13 +11,17 @@ from dataclasses import dataclass, replace
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs
-from ptp_symbolic.numeric.diagnose.declared_fit import led_over_windows, over_whole_runs
-from ptp_symbolic.numeric.diagnose.findings import is_earned
-from ptp_symbolic.numeric.diagnose.floor import floor_of, leaves_noise_alone
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise
+from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise, floor_of, leaves_noise_alone
 from ptp_symbolic.numeric.diagnose.proposals import Proposals, propose
-from ptp_symbolic.numeric.diagnose.refits import inside, polished, refitted_in
+from ptp_symbolic.numeric.diagnose.refits import (
+    inside,
+    led_over_windows,
+    over_whole_runs,
+    polished,
+    refitted_in,
+)
+from ptp_symbolic.numeric.diagnose.seeker import is_earned
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.identify.blocks import huber_loss, weighted_median
 from ptp_symbolic.numeric.identify.constants import (
     ITERATIONS,
     LITTLE,
@@ -26,7 +27,9 @@ from ptp_symbolic.numeric.identify.constants import (
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evaluate, mean_squares
 from ptp_symbolic.numeric.identify.evidence import (
+    Allowance,
     Deferred,
+    Threads,
     in_turn,
     is_recording,
     key_of,
@@ -34,10 +37,8 @@ from ptp_symbolic.numeric.identify.evidence import (
     stored,
 )
 from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
-from ptp_symbolic.numeric.identify.robust_loss import huber_loss, weighted_median
+from ptp_symbolic.numeric.identify.least_squares import Effort
 from ptp_symbolic.numeric.identify.run import Run, sizes
-from ptp_symbolic.numeric.identify.simulations import Effort
-from ptp_symbolic.numeric.identify.work import Allowance, Threads
 from ptp_symbolic.numeric.runtime.model import Model
 
 FloatArray = NDArray[np.float64]

@@ -11,7 +11,7 @@ import numpy as np
 
 from ptp_symbolic.numeric.diagnose.along_rows import grown_along_motion
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.confirmed_sets import (
+from ptp_symbolic.numeric.diagnose.confirm import (
     confirmed,
     denied,
     doubtful,
@@ -19,31 +19,39 @@ from ptp_symbolic.numeric.diagnose.confirmed_sets import (
     shortened,
     simplest_alike,
 )
-from ptp_symbolic.numeric.diagnose.declared_fit import as_fitted_alone
-from ptp_symbolic.numeric.diagnose.findings import Refusals, Search, Step, looked_at
-from ptp_symbolic.numeric.diagnose.floor import (
-    Floor,
-    floor_of,
-    leaves_noise_alone,
-    leaves_unusual_noise,
-)
-from ptp_symbolic.numeric.diagnose.gain import Gain, p_value
-from ptp_symbolic.numeric.diagnose.groups import Rival, confusable, overtaking, rivals
-from ptp_symbolic.numeric.diagnose.held_out import (
+from ptp_symbolic.numeric.diagnose.gain import (
+    Gain,
     held_out_fit,
     held_out_gain,
     is_borne_out,
     is_quiet,
     left_by_best_values,
+    p_value,
 )
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise, fitted_to_every_sample, left_over
-from ptp_symbolic.numeric.diagnose.refits import is_near_floor
-from ptp_symbolic.numeric.diagnose.seeker import Seeker
+from ptp_symbolic.numeric.diagnose.groups import Rival, confusable, overtaking, rivals
+from ptp_symbolic.numeric.diagnose.noise_floor import (
+    Floor,
+    carried_noise,
+    fitted_to_every_sample,
+    floor_of,
+    leaves_noise_alone,
+    leaves_unusual_noise,
+    leaves_white_noise,
+    left_over,
+)
+from ptp_symbolic.numeric.diagnose.refits import (
+    beside_declared,
+    better_over_same_runs,
+    is_near_floor,
+    led_over_windows,
+    refitted_in,
+)
+from ptp_symbolic.numeric.diagnose.seeker import Refusals, Search, Seeker, Step, looked_at, step_of
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving, ranked
 from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, FALSE_ALARM, MOST
 from ptp_symbolic.numeric.identify.fit import Fit
-from ptp_symbolic.numeric.identify.replays import estimable
 from ptp_symbolic.numeric.identify.run import sizes
+from ptp_symbolic.numeric.identify.windows import estimable
 
 NOTHING_MISSING = "nothing_missing"
 EXPLAINED = "explained"
@@ -342,3 +350,30 @@ def _row(about: str | None, rule: str, value: float, side: str, limit: float) ->
         side: float(limit),
         "holds": bool(holds),
     }
+
+
+def as_fitted_alone(found: Search) -> Search:
+    """The search with its declared model led over windows too, as `fit_declared` would, where it
+    ended before that and leaves more than white noise: what a set gains is told over the best fit
+    of the declared model.
+    """
+    task = found.task
+    if found.is_led or not task.windows or leaves_white_noise(found.declared, found.carried):
+        return found
+    task.progress("fitting the declared model over windows")
+    part, led = led_over_windows(replace(task, candidates=()), found.proposals)
+    if [run.name for run in part.train] != [run.name for run in task.train]:
+        led = refitted_in(task, led)
+    best = better_over_same_runs(found.declared, led)
+    if best is found.declared:
+        return replace(found, is_led=True)
+    chosen = found.chosen if found.chosen.candidates else best
+    if chosen.candidates:
+        chosen = beside_declared(task, chosen, best, found.carried)
+    members = tuple(
+        step_of(chosen, s.candidate, s.without if s.without.candidates else best)
+        for s in found.members
+    )
+    return replace(
+        found, declared=best, chosen=chosen, members=members, is_led=True, is_taken_over=False
+    )

@@ -303,3 +303,11 @@ def evaluate(
     split = len(columns)
     end = None if failed else found.x[-1].copy()
     return Evaluation(r, j[:, :split], j[:, split:].copy(), failed, end)
+
+
+def residual_of(
+    model: Model, p: FloatArray, tolerance: Tolerance, run: Run, z: FloatArray
+) -> FloatArray | None:
+    """Weighted residual [k * ny] of a run at p [np]; None where the simulation fails."""
+    e = evaluate(model, run, p, z, np.zeros(0, dtype=np.int64), False, tolerance)
+    return None if e.failed else e.residual

@@ -18,10 +18,14 @@ machine of another day is from it, whose friction is that of another temperature
 by more than blocks within each make likely, every log counts as one observation.
 
 The joint confidence region of the values of a fit, and the values in it that suit other runs.
+
+Finite differences in the Jacobian of a finished fit, where the derivatives at the point miss what
+these see.
 """
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,13 +46,24 @@ from ptp_symbolic.numeric.identify.blocks import (
 from ptp_symbolic.numeric.identify.constants import (
     FALSE_ALARM,
     FEWEST_BLOCKS,
+    MISLEADING,
+    MOST,
     NOTHING,
+    ROUGH,
     SAME,
+    STEP,
     TEST_ALARM,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, slopes, to_search, wrapped
-from ptp_symbolic.numeric.identify.evidence import recorded
+from ptp_symbolic.numeric.identify.evaluate import Evaluation, mean_squares
+from ptp_symbolic.numeric.identify.evidence import derived, is_recording, recorded
 from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.least_squares import (
+    POLISH,
+    Effort,
+    problem_of,
+    simulations_of,
+)
 from ptp_symbolic.numeric.identify.run import by_log
 
 BoolArray = NDArray[np.bool_]
@@ -428,3 +443,73 @@ def project_out(jacobian: FloatArray, nuisance: FloatArray) -> FloatArray:
     kept = np.abs(np.diag(triangle)) > NOTHING * max(np.max(np.abs(triangle)), 1e-300)
     basis = basis[:, kept]
     return jacobian - basis @ (basis.T @ jacobian)
+
+
+def with_finite_differences(
+    fit: Fit, executor: Executor | None = None, reach: FloatArray | None = None
+) -> Fit:
+    """`fit` with finite differences in its Jacobians where the tangents at the optimum are blind to
+    what these see: friction that holds, or lets go a sample later, makes the residual a staircase
+    of a parameter.
+
+    The differences go over a usual step, or as far as the parameters may be off where that `reach`
+    [nf] in search coordinates is given. Where they stand in and tell a parameter far better than
+    their step, that is too long: one jump somewhere in it says that the parameter is no further
+    off, but not where it is. So it is shortened until the interval is about as long; where it never
+    is, the tangents stay.
+    """
+    if not fit.free or fit.failed:
+        return fit
+    if not is_recording():
+        return _with_finite_differences(fit, executor, reach)
+
+    def changed() -> Sequence[Evaluation]:
+        return _with_finite_differences(fit, executor, reach).evaluations
+
+    squares = mean_squares(fit.evaluations, fit.runs)
+    return replace(fit, evaluations=derived("finite differences", (fit, reach), changed, squares))
+
+
+def _with_finite_differences(fit: Fit, executor: Executor | None, reach: FloatArray | None) -> Fit:
+    """See `with_finite_differences`, of a fit that has free parameters and has not failed."""
+    effort = Effort(tolerance=fit.tolerance, secants=STEP)
+    simulations = simulations_of(fit.model, fit.runs, fit.free, fit.values, effort, executor)
+    problem = problem_of(simulations, effort)
+    assert problem.refine is not None
+    phi = to_search(fit.free, fit.values)
+    here = problem.evaluate(phi, fit.z, True)
+    fit = replace(fit, evaluations=tuple(here))
+    steps = np.full(len(phi), STEP) if reach is None else np.minimum(reach, STEP)
+    steps = np.where(steps > 0.0, steps, STEP)
+    wanted = np.ones(len(phi), dtype=np.bool_)
+    for _ in range(POLISH):
+        shifts = [(run, int(c)) for run in range(len(here)) for c in np.flatnonzero(wanted)]
+        finite = replace(problem.refine, step=steps, chosen=shifts)(phi, fit.z, here)
+        blind = [_is_blind(*pair, steps) for pair in zip(here, finite, strict=True)]
+        parts = zip(blind, here, finite, strict=True)
+        columns = [np.where(b, f.by_parameter, e.by_parameter) for b, e, f in parts]
+        fit = _with_columns(fit, columns, wanted)
+        if reach is not None:
+            return fit
+        found = reaches(fit)
+        wanted &= np.any(blind, axis=0) & (found < MOST * steps)
+        if not wanted.any():
+            return fit
+        steps = np.where(wanted, np.maximum(found, MOST**2 * steps), steps)
+    return _with_columns(fit, [e.by_parameter for e in here], wanted)
+
+
+def _with_columns(fit: Fit, columns: Sequence[FloatArray], wanted: BoolArray) -> Fit:
+    """`fit` with the `wanted` [nf] columns of other Jacobians, one per run."""
+    parts = zip(fit.evaluations, columns, strict=True)
+    every = [replace(e, by_parameter=np.where(wanted, c, e.by_parameter)) for e, c in parts]
+    return replace(fit, evaluations=tuple(every))
+
+
+def _is_blind(at_point: Evaluation, finite: Evaluation, steps: FloatArray) -> BoolArray:
+    """Which tangents [nf] of a run are blind to what differences over `steps` [nf] see, beyond what
+    errors of the simulation may change.
+    """
+    seen, size = (np.linalg.norm(e.by_parameter, axis=0) for e in (at_point, finite))
+    by_errors = ROUGH * np.sqrt(len(at_point.residual)) / steps
+    return np.asarray((size > by_errors) & (seen < MISLEADING * size))
