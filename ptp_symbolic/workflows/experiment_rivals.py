@@ -13,7 +13,7 @@ from ptp_symbolic.models.declared import free_parameters, known_values, refuse_u
 from ptp_symbolic.numeric.data import read_logs
 from ptp_symbolic.numeric.diagnose.candidates import Candidate, find_candidates, vanished
 from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise
-from ptp_symbolic.numeric.diagnose.proposals import Proposals, placed_by_rows, propose
+from ptp_symbolic.numeric.diagnose.proposals import ProposedSets, placed_by_rows, propose
 from ptp_symbolic.numeric.diagnose.refits import fit_declared, from_rows, polished
 from ptp_symbolic.numeric.diagnose.trial import Task, fitted, halving, restarted
 from ptp_symbolic.numeric.experiment.contender import Contender, from_fit, without_logs
@@ -55,7 +55,7 @@ class _Known:
     values: Mapping[str, float]
     candidates: tuple[Candidate, ...]
     task: Task | None
-    proposals: Proposals | None
+    proposals: ProposedSets | None
 
 
 def rivals_of(

@@ -9,7 +9,7 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.diagnose.confirm import at_bound
 from ptp_symbolic.numeric.diagnose.hints import further_hints
-from ptp_symbolic.numeric.diagnose.noise_floor import Floor
+from ptp_symbolic.numeric.diagnose.noise_floor import NoiseFloor
 from ptp_symbolic.numeric.diagnose.remainder import hints, remainder, residual_tests
 from ptp_symbolic.numeric.diagnose.summary import (
     added_effects,
@@ -247,7 +247,7 @@ def _module_of(extended: Platform) -> tuple[dict[str, str], list[str]]:
         return {}, [f"The declared and the found values exclude each other. {error}"]
 
 
-def _carried_remarks(platform: Platform, floor: Floor) -> list[str]:
+def _carried_remarks(platform: Platform, floor: NoiseFloor) -> list[str]:
     """Inputs whose noise, estimated from the logs, leaves more in an output than its own does. A
     command that a controller computed from a noisy angle looks noisy, and is known exactly.
     """

@@ -206,14 +206,14 @@ def test_a_rule_has_the_price_that_a_hand_gives_it(
     """
     verdict = "ptp_symbolic.numeric.diagnose.verdict"
 
-    def from_elsewhere(seeker, chosen, refused=None):
+    def from_elsewhere(stepwise, chosen, refused=None):
         moved = {n: 1.01 * v for n, v in chosen.values.items()}
-        fitted(seeker.task, chosen.candidates, moved, None)
+        fitted(stepwise.task, chosen.candidates, moved, None)
 
     rules = (
         Rule("word", "", (f"{verdict}:word_of",), lambda *given: "unexplained"),
         Rule("validated", "", (f"{verdict}:is_borne_out",), lambda *given: True),
-        Rule("elsewhere", "", (f"{verdict}:rivals",), from_elsewhere),
+        Rule("elsewhere", "", (f"{verdict}:refitted_alternatives",), from_elsewhere),
     )
     monkeypatch.setattr(price, "RULES", rules)
     said = list(price.prices([kept], "", simulate=False))

@@ -124,7 +124,7 @@ def test_bristles_are_found_beside_the_shaft_and_leave_noise_alone(tmp_path: Pat
     with workers() as executor:
         logs = Logs(read, read, executor, lambda text: None, Allowance())
         alone = fit_structures(platform, [shaft], logs).every[0]
-        assert not alone.is_quiet
+        assert not alone.is_noise_alone
         there = extended(shaft.platform, (), alone.trial.values, ())
         beside = pairs(replace(shaft, platform=there))
         both = next(each for each in beside if "lugre_friction@pan" in each.keys)

@@ -11,7 +11,7 @@ import pytest
 from ptp_symbolic.numeric.diagnose import summary
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.remainder import residual_tests
-from ptp_symbolic.numeric.diagnose.seeker import Tried
+from ptp_symbolic.numeric.diagnose.stepwise import Tried
 from ptp_symbolic.numeric.diagnose.summary import curves_of, error_of, sizes_of
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.diagnose.verdict import EXPLAINED, NOTHING_MISSING, PARTLY, UNEXPLAINED

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from ptp_symbolic.numeric.diagnose.noise_floor import Floor
+from ptp_symbolic.numeric.diagnose.noise_floor import NoiseFloor
 from ptp_symbolic.numeric.diagnose.trial import (
     SHARP,
     Task,
@@ -77,7 +77,7 @@ IntArray = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Gain:
-    """Share of the predictive loss of the smaller model that the larger one takes away, its 95 %
+    """Share by which the larger model reduces the predictive loss of the smaller one, its 95 %
     interval, its t statistic with `degrees` of freedom over blocks, and the probability of ranks of
     the blocks like these, or better ones, where there is no gain (see `compared`).
     """
@@ -96,10 +96,10 @@ class Gain:
 
     @property
     def is_most(self) -> bool:
-        """Whether surely, at 95 %, more of the loss is taken away than is left."""
+        """Whether the lower 95 % limit of the share is above one half."""
         return self.lower > MOST
 
-    def is_clear(self, tests: int) -> bool:
+    def is_significant(self, tests: int) -> bool:
         """Whether the gain is above zero at 5 % over so many `tests` (Bonferroni)."""
         return self.chance < FALSE_ALARM / max(tests, 1)
 
@@ -117,8 +117,8 @@ def gain(larger: Trial, smaller: Trial) -> Gain:
 
 @recorded(Gain)
 def gain_in_innovations(larger: Trial, smaller: Trial) -> Gain:
-    """The same where what `larger` leaves is coloured: in its innovations, each model one step of
-    generalized least squares from its fit.
+    """The same where the residual of `larger` is autocorrelated: in its innovations, each model one
+    step of generalized least squares from its fit.
     """
     runs = larger.fit.runs
     signals = runs[0].measured.shape[1]
@@ -157,8 +157,8 @@ def _gain(
 ) -> Gain:
     """The gain of the first of two models, given by residuals and Jacobians of the same runs.
 
-    Signals count by what the first leaves in them, or by the mean square `noise` [signals] of
-    theirs where it leaves less: the angle of an axis that rests is told to no better.
+    Signals are scaled by the median square of the first, or by their mean square `noise` [signals]
+    where that is larger: the angle of an axis that rests is known to no better.
     """
     signals = runs[0].measured.shape[1]
     difference = [
@@ -181,8 +181,8 @@ def _gain(
 def compared(larger: FloatArray, smaller: FloatArray) -> Gain:
     """The gain from the losses `larger` and `smaller` [b] of the same blocks by two models.
 
-    By the t statistic a gain is not clear where most of it lies in few blocks, however many gain
-    besides; by signed ranks it is (Wilcoxon, 1945).
+    By the t statistic a gain is not significant where most of it lies in few blocks, however many
+    gain besides; by signed ranks it is (Wilcoxon, 1945).
     """
     taken = smaller - larger
     share, lower, upper = bootstrap_share(taken, smaller, 1.0 - FALSE_ALARM)
@@ -247,31 +247,31 @@ def _predicted_squares(
     return block_squares(left.predicted, label, signals), left.leverage <= 1.0 - ELSEWHERE
 
 
-def is_borne_out(held_out: Gain, quiet: bool, unusual: bool, material: float) -> bool:
-    """Whether the validation runs bear out what the training runs named: they gain a `material`
-    share by it. Where they show more than noise (not `quiet`), a wrong effect may imitate what is
-    missing, so that it has to take away more than it leaves, as on training runs.
+def is_validated(held_out: Gain, quiet: bool, unusual: bool, material: float) -> bool:
+    """Whether what the training runs named holds on the validation runs: their sum of squares falls
+    by a `material` share. Where their residual exceeds the noise (not `quiet`), a wrong effect may
+    imitate a missing one, so that it has to fall by half, as on training runs.
 
-    Where all may be noise, but training runs leave an `unusual` amount of it, the noise is large by
+    Where all may be noise, but the residual of training runs is `unusual`, the noise is large by
     chance, or an effect is missing. Any effect follows a part of either, for seconds, in blocks
-    left out as well; the validation runs have noise of their own, and must gain clearly.
+    left out as well; the validation runs have noise of their own, and must gain significantly.
     """
     if not quiet:
         return held_out.share >= MOST
-    return held_out.share >= material and (not unusual or held_out.is_clear(1))
+    return held_out.share >= material and (not unusual or held_out.is_significant(1))
 
 
 @recorded()
 def left_by_best_values(
     after: Fit, estimated: Fit, level: FloatArray, executor: Executor | None = None
 ) -> FloatArray:
-    """Mean squares [runs, ny], in units of the noise, that the validation runs `after` leave with
+    """Mean square residuals [runs, ny] of the validation runs `after`, in units of the noise, with
     other values: those in the joint confidence region of the `estimated` ones that suit all runs
     together best, to first order. Starts are free. Signals count by their noise `level` [ny], runs
     that are far worse than usual count less (Huber).
 
-    A model that lacks nothing leaves noise with its true values, and the region holds those. What
-    a lacking model leaves is seldom of the form of a change of its values.
+    The residual of a complete model at its true values is noise, and the region holds those. That
+    of an incomplete one is rarely of the form of a change of its values.
     """
     squares = mean_squares(after.evaluations, after.runs)
     moved = replace(after, free=estimated.free)
@@ -299,14 +299,14 @@ def left_by_best_values(
     return np.array([np.mean((table * level) ** 2, axis=0) for table in tables])
 
 
-def is_quiet(left: FloatArray, size: FloatArray, floor: Floor, trained: Fit) -> bool:
-    """Whether validation runs of `size` [runs] samples show no more than noise, by what they have
-    `left` [runs, ny] (see `left_by_best_values`). The median of the runs counts, for one that
-    sticks at another sample than it did is off by counts, but none may be further off than what is
-    near the floor. Of many windows all count but the worst, a MATERIAL share of the samples, and
-    they may not leave more than the windows of the training runs. Windows that leave no more than
-    the usual noise count alike in that: those at rest, rounded to a count that they stay at, leave
-    less, and show no lack in those that move.
+def is_noise_alone(left: FloatArray, size: FloatArray, floor: NoiseFloor, trained: Fit) -> bool:
+    """Whether validation runs of `size` [runs] samples show no more than noise, by their mean
+    square residuals `left` [runs, ny] (see `left_by_best_values`). The median of the runs counts,
+    for one that sticks at another sample than it did is off by counts, but none may be further off
+    than what is near the noise floor. Of many windows all count but the worst, a MATERIAL share of
+    the samples, and their residuals may not be larger than those of the training windows. Windows
+    below the usual noise count as equal in that: those at rest, rounded to a count that they stay
+    at, have smaller residuals, and show no lack in those that move.
     """
     squares = left / (ABOVE_NOISE * floor.most) ** 2
     many = len(left) >= MANY_RUNS
@@ -344,9 +344,9 @@ def simulated_freely(task: Task, runs: Sequence[Run], values: Mapping[str, float
 
 
 def held_out_gain(after: Fit, before: Fit) -> Gain:
-    """The share of the mean square error of validation runs or windows that is taken away (Huber's
-    loss: those far worse than usual count linearly). Windows of one log count together as long as
-    what they gain is correlated (see `block_length`).
+    """The share by which the mean square error of validation runs or windows falls (Huber's loss:
+    those far worse than usual count linearly). Windows of one log count together as long as what
+    they gain is correlated (see `block_length`).
     """
     size = sizes(after.runs)
     squares = [mean_squares(fit.evaluations, fit.runs) for fit in (after, before)]

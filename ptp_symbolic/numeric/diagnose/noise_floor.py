@@ -1,10 +1,8 @@
-"""What a fit leaves of its runs, in one number per signal, and what noise of the inputs leaves.
+"""The noise floor: the residual of a perfect model, and whether that of a fit is no larger.
 
-The noise floor: what a perfect model leaves, and whether a model leaves no more.
-
-Rounding and noise of a signal, as the platform declares them or as its logs show; the colour of
-that noise, where it is not declared, from what the model leaves; and the noise of the inputs,
-carried to the outputs by the model itself.
+It consists of rounding and noise of each signal, as the platform declares them or as its logs show;
+of the autocorrelation of that noise, where it is not declared, by the residual; and of the noise of
+the inputs, propagated to the outputs by the model itself.
 
 The samples that a search needs: simulations end a step at each, which is most of their cost.
 
@@ -74,9 +72,9 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Carried:
-    """What the noise of the inputs leaves in every signal [ny], over its noise: as a root mean
-    square that is `usual`, one that is exceeded at FALSE_ALARM (`seldom`), and the `most` of it, at
-    TEST_ALARM (see `bound_of`).
+    """The propagated noise of the inputs in every signal [ny], over the noise of that: its median
+    root mean square (`usual`), and those that are exceeded at FALSE_ALARM (`seldom`) and at
+    TEST_ALARM (`most`; see `bound_of`).
     """
 
     usual: FloatArray
@@ -84,7 +82,7 @@ class Carried:
     most: FloatArray
 
 
-def left_over(fit: Fit) -> FloatArray:
+def normalised_residual(fit: Fit) -> FloatArray:
     """Robust root mean square [ny] of the residual of a fit in every signal, over its noise."""
     return np.sqrt(_robust_mean(mean_squares(fit.evaluations, fit.runs), sizes(fit.runs)))
 
@@ -106,11 +104,11 @@ def _robust_mean(squares: FloatArray, size: FloatArray) -> FloatArray:
 
 @recorded(Carried)
 def carried_noise(task: Task, fit: Fit) -> Carried:
-    """What the noise of the inputs leaves, by the model of `fit`.
+    """The propagated noise of the inputs, by the model of `fit`.
 
-    All runs are replayed some times, and what is left of them beyond noise of their signals is
-    summed up as a fit is; the median counts as usual. A replay that cannot be simulated leaves what
-    the others of its run leave, and a run without any tells nothing.
+    All runs are replayed some times, and what that adds to the noise of their signals is summed up
+    as a residual is. A replay that cannot be simulated counts as the median of its run, and a run
+    without any is left out.
     """
     p = task.model.parameter_vector(dict(fit.values))
     runs = task.every_sample if is_thinned(task, fit) else fit.runs
@@ -123,8 +121,8 @@ def carried_noise(task: Task, fit: Fit) -> Carried:
 
 
 def _simulated(squares: FloatArray, size: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Mean squares [replays, told, ny] of the runs of which any replay was simulated, from those of
-    all runs [replays, runs, ny], nan where one was not; and their `size` [told].
+    """Mean squares [replays, k, ny] of the runs of which any replay was simulated, from those of
+    all runs [replays, runs, ny], nan where one was not; and their `size` [k].
     """
     known = np.ma.masked_invalid(squares)
     medians = np.ma.median(known, axis=0)
@@ -137,7 +135,7 @@ def _simulated(squares: FloatArray, size: FloatArray) -> tuple[FloatArray, Float
 
 def bound_of(squares: FloatArray, chance: float) -> float:
     """The bound that a mean square exceeds with a `chance`, from some [n] that are like it; 99 %
-    bounds from eight, which tell the scale only roughly, were exceeded by 2 to 3 %.
+    bounds from eight replays, which give the scale only roughly, were exceeded by 2 to 3 %.
 
     It is a sum of squares of one normal number or more: the variance of its logarithm tells how
     many, the mean of that its scale (Bartlett and Kendall, 1946), and both are known from n alone.
@@ -220,10 +218,10 @@ def fitted_to_every_sample(task: Task, trials: Sequence[Trial]) -> list[Trial]:
 
 
 @dataclass(frozen=True, eq=False)
-class Floor:
-    """What a perfect model leaves in every signal [ny], in units of the rounding and noise that
-    weights stand for: the `noise` of the signal, the `largest` that it may have at 95 % (noise of
-    unknown colour), and what the inputs `carried` there.
+class NoiseFloor:
+    """The residual of a perfect model in every signal [ny], in units of the rounding and noise in
+    its weight: the `noise` of the signal, the `largest` that it may have at 95 % (its
+    autocorrelation is not known), and the noise `carried` there from the inputs.
     """
 
     noise: FloatArray
@@ -232,7 +230,7 @@ class Floor:
 
     @property
     def level(self) -> FloatArray:
-        """Root mean square [ny] of all that a perfect model leaves."""
+        """Root mean square [ny] of the residual of a perfect model."""
         return np.hypot(self.noise, self.carried.usual)
 
     @property
@@ -241,29 +239,31 @@ class Floor:
         return np.hypot(self.largest, self.carried.most)
 
 
-def floor_of(task: Task, trial: Trial, carried: Carried) -> Floor:
-    """The floor, with the colour of the noise as the residual of `trial` shows it, but no more than
-    the differences of the measured signals and the quietest run leave room for, and what the inputs
-    `carried`. Where more is left than noise of that colour, where what is left varies as no noise
-    does (and not by that of the inputs), or where its slow part is not there while the model rests,
-    model error has a colour: the floor is white then, as it is for a task whose noise is.
+def noise_floor_of(task: Task, trial: Trial, carried: Carried) -> NoiseFloor:
+    """The noise floor, with the autocorrelation of the residual of `trial`, but no more than the
+    differences of the measured signals and the quietest run allow, and with the noise `carried`
+    from the inputs. Where the residual exceeds such noise, where its size varies as that of no
+    noise (nor by the inputs), or where its slow part is absent while the model rests, it is model
+    error: the floor is white then, as it is for a task whose noise is.
     """
     white = np.ones(len(trial.fit.runs[0].signals))
     if task.white:
-        return Floor(white, white, carried)
-    floor = Floor(*_of_its_colour(task, trial.fit, carried), carried)
-    return floor if leaves_noise_alone(trial, floor) else Floor(white, white, carried)
+        return NoiseFloor(white, white, carried)
+    floor = NoiseFloor(*_of_its_colour(task, trial.fit, carried), carried)
+    return floor if leaves_noise_alone(trial, floor) else NoiseFloor(white, white, carried)
 
 
 @recorded()
 def _of_its_colour(task: Task, fit: Fit, carried: Carried) -> tuple[FloatArray, FloatArray]:
-    """The `noise` and the `largest` of a floor [ny], with the colour of the residual of a fit."""
+    """The `noise` and the `largest` of a noise floor [ny], with the autocorrelation of the residual
+    of a fit.
+    """
     fit = with_every_residual(task, fit)
     runs = fit.runs
     rms, most = np.ones(len(runs[0].signals)), np.ones(len(runs[0].signals))
     squares = mean_squares(fit.evaluations, runs)
     hidden = most_hidden(task)
-    usual = squares <= TUNING**2 * np.maximum(left_over(fit) ** 2, 1.0)
+    usual = squares <= TUNING**2 * np.maximum(normalised_residual(fit) ** 2, 1.0)
     for column, signal in enumerate(runs[0].signals):
         if signal not in task.declared_noise:
             series = [e.residual.reshape(r.measured.shape)[:, column] for r, e in fit.pairs()]
@@ -285,7 +285,7 @@ def _of_its_colour(task: Task, fit: Fit, carried: Carried) -> tuple[FloatArray, 
 
 def _slow_part(series: Sequence[FloatArray], noise: Noise) -> float:
     """Standard deviation of what residual `series` [n] hold beside white noise of 1, no more than
-    `noise` would: a spectrum that is cut below tells slow noise too large.
+    `noise` would: a spectrum that is cut below overestimates slow noise.
     """
     left = float(np.mean(np.concatenate(series) ** 2)) if series else 1.0
     return float(np.sqrt(max(min(noise.rms**2, left) - 1.0, 0.0)))
@@ -305,29 +305,32 @@ def _with_hidden(pole: float) -> float:
 
 
 def leaves_white_noise(trial: Trial, carried: Carried) -> bool:
-    """Whether a trial leaves no more than rounding, white noise and what the inputs `carried`
-    there; a search goes on where it does, whatever the colour of the residual.
+    """Whether the residual of a trial is within rounding, white noise and the noise `carried` from
+    the inputs; a search goes on where it is not, whatever its autocorrelation.
     """
-    return bool(np.all(left_over(trial.fit) <= ABOVE_NOISE * np.hypot(1.0, carried.most)))
+    return bool(np.all(normalised_residual(trial.fit) <= ABOVE_NOISE * np.hypot(1.0, carried.most)))
 
 
-def leaves_noise_alone(trial: Trial, floor: Floor) -> bool:
-    """Whether the residual of a trial cannot be told from noise, in any signal."""
-    return bool(np.all(left_over(trial.fit) <= ABOVE_NOISE * floor.most))
+def leaves_noise_alone(trial: Trial, floor: NoiseFloor) -> bool:
+    """Whether the residual of a trial is indistinguishable from noise, in all signals."""
+    return bool(np.all(normalised_residual(trial.fit) <= ABOVE_NOISE * floor.most))
 
 
-def leaves_unusual_noise(trial: Trial, floor: Floor) -> bool:
-    """Whether a trial leaves more, in any signal, than noise of the colour that its residual shows
-    and what the noise of the inputs seldom exceeds.
+def exceeds_usual_noise(trial: Trial, floor: NoiseFloor) -> bool:
+    """Whether the residual of a trial exceeds, in any signal, noise of its autocorrelation with the
+    propagated noise of the inputs that is exceeded at FALSE_ALARM.
     """
     seldom = np.hypot(floor.noise, floor.carried.seldom)
-    return bool(np.any(left_over(trial.fit) > ABOVE_NOISE * seldom))
+    return bool(np.any(normalised_residual(trial.fit) > ABOVE_NOISE * seldom))
 
 
-def leaves_noise_of_inputs(trial: Trial, floor: Floor) -> bool:
-    """Whether a trial leaves what is usual where the noise of the inputs leaves more than that of
-    the signals. It lasts for seconds, so that some effect always follows a part of it, in every
-    block of time: where nothing more is left without an effect, that shows no lack.
+def is_within_noise_of_inputs(trial: Trial, floor: NoiseFloor) -> bool:
+    """Whether the residual of a trial is within the usual noise, where that of the inputs,
+    propagated, exceeds that of the signals. It lasts for seconds, so that some effect always
+    follows a part of it, in every block of time: where the residual is no larger without an effect,
+    nothing is missing.
     """
     most_by_inputs = np.any(floor.carried.usual > floor.noise)
-    return bool(most_by_inputs and np.all(left_over(trial.fit) <= ABOVE_NOISE * floor.level))
+    return bool(
+        most_by_inputs and np.all(normalised_residual(trial.fit) <= ABOVE_NOISE * floor.level)
+    )

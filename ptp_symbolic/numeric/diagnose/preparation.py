@@ -1,13 +1,13 @@
 """What is settled before a diagnosis: candidates, windows, noise.
 
-Inputs that seem to act the other way round: a motor, or a sensor, wired with its sign turned.
+Inputs that seem to act the other way round: a motor, or a sensor, wired with its sign inverted.
 
 How small a parameter or an effect these logs can show, predicted at the declared start values.
 
-The prediction takes the declared model for right and the noise for white: model errors leave less
-to be seen. An effect is simulated at a small amount; its response, projected off what the free
-parameters and the starts of the runs can follow, must stand out of the noise, and hold the share of
-the squared error below which nothing is named.
+The prediction takes the declared model for right and the noise for white: model errors hide more.
+An effect is simulated at a small amount; its response, projected off what the free parameters and
+the starts of the runs can follow, must stand out of the noise, and hold the share of the squared
+error below which nothing is named.
 """
 
 from collections.abc import Mapping, Sequence
@@ -25,9 +25,9 @@ from ptp_symbolic.numeric.diagnose.candidates import (
     vanished,
     within_reach,
 )
-from ptp_symbolic.numeric.diagnose.cut_runs import leading, spread_over, takes_away_most
+from ptp_symbolic.numeric.diagnose.cut_runs import first_windows, more_than_halves, spread_over
 from ptp_symbolic.numeric.diagnose.proposals import declared_start, equation_space, first_fit
-from ptp_symbolic.numeric.diagnose.refits import is_near_floor
+from ptp_symbolic.numeric.diagnose.refits import is_near_noise_floor
 from ptp_symbolic.numeric.diagnose.responses import (
     projected_off,
     response_columns,
@@ -98,7 +98,7 @@ def task_of(
         train,
         pieces,
         pieces,
-        tuple(leading(w, x, SHORT) for x, w in windows.items()) if length is None else (),
+        tuple(first_windows(w, x, SHORT) for x, w in windows.items()) if length is None else (),
         spread_over(windows[SHORT], SHORT) if length is None else spread_over(pieces, length),
         cut(model, validate, length),
         free,
@@ -150,15 +150,15 @@ def _finest_angle(runs: Sequence[Run]) -> float:
 DRIVING = ("V", "N m", "N", "A")  # units of inputs that drive an axis
 
 
-def turned_inputs(task: Task, declared: Trial) -> tuple[str, ...]:
-    """A sentence for every driving input with which, its sign turned, the declared model fits the
-    training runs so much better that most of what the fit `declared` leaves is gone.
+def inverted_inputs(task: Task, declared: Trial) -> tuple[str, ...]:
+    """A sentence for every driving input with whose sign inverted the declared model more than
+    halves the sum of squares of the fit `declared`.
     """
-    if is_near_floor(declared):
+    if is_near_noise_floor(declared):
         return ()
     found = []
     for k, name in enumerate(task.model.input_names):
-        if task.model.units[name] in DRIVING and takes_away_most(_turned(task, k), declared):
+        if task.model.units[name] in DRIVING and more_than_halves(_inverted(task, k), declared):
             found.append(
                 f"The declared model fits far better with the sign of '{name}' inverted: one of"
                 " motor and sensor is wired the other way round; give one of their signals a"
@@ -167,8 +167,10 @@ def turned_inputs(task: Task, declared: Trial) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _turned(task: Task, number: int) -> Trial:
-    """The declared model fitted to the training runs with an input turned, begun at its rows."""
+def _inverted(task: Task, number: int) -> Trial:
+    """The declared model fitted to the training runs with the sign of an input inverted, started at
+    the values of its rows.
+    """
 
     def turned(run: Run) -> Run:
         sign = np.ones(run.held_inputs.shape[1])

@@ -4,8 +4,8 @@ signatures of all candidates, with Huber's weights.
 Which sets of candidates explain the rows of the equation space: all subsets, cross-validated.
 
 Everything is linear here: the declared parameters and the signatures are columns of one regression,
-so that a subset costs the solution of a small system per fold, and effects that stand in for one
-another compete at once (all subsets: Furnival and Wilson, 1974).
+so that a subset costs the solution of a small system per fold, and aliased effects compete at once
+(all subsets: Furnival and Wilson, 1974).
 """
 
 import itertools
@@ -106,9 +106,9 @@ def reweighted(found: Regression, candidates: Sequence[Candidate]) -> Regression
     return replace(found, weight=weight, scale=scale)
 
 
-def untold(found: Regression) -> list[FreeParameter]:
-    """Declared parameters of which all rows, with all others known, tell less than their start
-    does, which may be off by its scale. Rows overlap: those of a block in one equation count as
+def weakly_identified(found: Regression) -> list[FreeParameter]:
+    """Declared parameters on which all rows, with all others known, hold less information than the
+    prior, which is as wide as their scale. Rows overlap: those of a block in one equation count as
     one.
     """
     counted = np.column_stack([found.equation, found.block])
@@ -136,10 +136,11 @@ def lines(found: Regression, scan: Callable[[FloatArray], Sequence[Signature]]) 
     """Signatures of the candidates with a frequency, all forms of one at the same; `scan` gives
     them at the strongest lines of a residual [n].
 
-    A larger effect hides a line, or looks like one of another frequency; so what the best set
-    without lines leaves is scanned too. Powers are those of a line by itself, where slow motion and
-    gaps smear it: of all frequencies of a candidate the one counts that takes away most beside that
-    set, in its simplest form, as several harmonics of a false line take away much.
+    A larger effect hides a line, or looks like one of another frequency; so the residual of the
+    best set without lines is scanned too. Powers are those of a line by itself, where slow motion
+    and gaps smear it: of all frequencies of a candidate the one counts that reduces the sum of
+    squares most beside that set, in its simplest form, for several harmonics of a false line reduce
+    it much as well.
     """
     best = ranked_subsets(found, LARGEST)[0].candidates
     beside = [s for s in found.signatures if s.candidate in best]

@@ -1,11 +1,10 @@
 """What a finite amount of a candidate would change in the simulated outputs of a trial.
 
 Breakaways, gaps and delays do not show in the torque along the motion, or have no derivative where
-they vanish: their response to a finite amount, the free parameters following, tells what a refit
+they vanish: their response to a finite amount, the free parameters following, predicts what a refit
 could gain, and where it should start.
 
-Linear algebra at a fit: what an effect changes in the residuals, projected off what others
-follow.
+Linear algebra at a fit: what an effect changes in the residuals, projected off what others follow.
 """
 
 from collections.abc import Callable, Collection, Mapping, Sequence
@@ -18,7 +17,7 @@ from scipy.optimize import lsq_linear
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate, with_what_it_brings
 from ptp_symbolic.numeric.diagnose.proposals import (
-    Proposal,
+    ProposedSet,
 )
 from ptp_symbolic.numeric.diagnose.signatures import at_line, axes_of, band, brought
 from ptp_symbolic.numeric.diagnose.trial import (
@@ -76,14 +75,14 @@ def effect_of(fit: Fit, vanishing: Mapping[str, float], table: FloatArray) -> Fl
     return effect
 
 
-def made_up_for(
+def compensated(
     fit: Fit, vanishing: Mapping[str, float], kept: Collection[str], table: FloatArray
 ) -> dict[str, float]:
     """Values of the fit with parameters at their values in `vanishing`, and with others, `kept`,
-    where they make up for that, by linear prediction; `table` is that of `effect_of`.
+    where they compensate for that, by linear prediction; `table` is that of `effect_of`.
 
     They move by what that predicts in their units, not in search coordinates: what an effect adds
-    to an inertia is a sum. Parameters that the logs hardly tell apart move together.
+    to an inertia is a sum. Parameters that the logs hardly distinguish move together.
     """
     own = [k for k, f in enumerate(fit.free) if f.name in kept]
     columns, unit = table[:, own], slopes(fit.free, to_search(fit.free, fit.values))
@@ -98,9 +97,11 @@ def made_up_for(
     return values
 
 
-def left_beside(fit: Fit, effect: FloatArray, kept: Collection[str], table: FloatArray) -> float:
-    """Sum of squares of what is left of an `effect` [n] once parameters `kept` do of it what they
-    can within their bounds, by linear prediction; `table` is that of `effect_of`.
+def residual_beside(
+    fit: Fit, effect: FloatArray, kept: Collection[str], table: FloatArray
+) -> float:
+    """Sum of squares of the part of an `effect` [n] that parameters `kept` cannot reproduce within
+    their bounds, by linear prediction; `table` is that of `effect_of`.
     """
     own = [k for k, f in enumerate(fit.free) if f.name in kept]
     whole = float(effect @ effect)
@@ -171,13 +172,13 @@ class Columns:
 
 @dataclass(frozen=True, eq=False)
 class Response:
-    """A candidate added to a trial: the share of the squared residual that is predicted to be left,
+    """A candidate added to a trial: the predicted share of the squared residual with it (`left`),
     where a refit should start, and the values that shape it.
     """
 
     candidate: Candidate
     left: float
-    proposal: Proposal
+    proposal: ProposedSet
     shape: Mapping[str, float]
 
 
@@ -201,7 +202,7 @@ def responses(task: Task, trial: Trial, candidates: Sequence[Candidate]) -> list
             return None
         number, shape, left, moved = found
         candidate = forms[number]
-        proposal = Proposal(wholes[number], {**trial.values, **moved})
+        proposal = ProposedSet(wholes[number], {**trial.values, **moved})
         return Response(candidate, left, proposal, candidate.shapes[shape])
 
     jobs = task.executor.map(best_form, wanted.values())
@@ -231,8 +232,9 @@ def _best_form(
     wholes: Sequence[Sequence[Candidate]],
     linear: Callable[[], _Linear],
 ) -> tuple[int, int, float, dict[str, float]] | None:
-    """The number of the form of a candidate that promises most and of its shape, what is left by
-    it, and the values that it changes; `wholes` are the sets that the forms make of the trial's.
+    """The number of the form of a candidate that promises most and of its shape, the share of the
+    squared residual with it, and the values that it changes; `wholes` are the sets that the forms
+    make of the trial's.
     """
     fit, at, seen = trial.fit, linear(), SeenColumns()
     most = REACH * float(np.linalg.norm(at.residual))
@@ -335,7 +337,7 @@ def _column(
 def least(here: FloatArray, declared: FloatArray, found: Columns) -> tuple[FloatArray, float]:
     """Amounts [nf + k] of the declared search coordinates and of the candidate's parameters that
     make the residual `here` [n] least within bounds (ridge regression; `declared` [n, nf] is its
-    Jacobian), and the share of its square that is left.
+    Jacobian), and the remaining share of its square.
     """
     zero = [found.candidate.vanishing[f.name] for f in found.free]
     reach = np.full(declared.shape[1], MOST * LARGEST_STEP)
@@ -358,9 +360,9 @@ def least(here: FloatArray, declared: FloatArray, found: Columns) -> tuple[Float
 def at_lines_of_outputs(
     task: Task, space: EquationSpace | None, trial: Trial, waves: Sequence[Candidate]
 ) -> tuple[Candidate, ...]:
-    """Those of the candidates `waves` of which a line stands out in what a trial leaves of the
-    outputs, by linear prediction; at that line, in all their forms. None without the `space` of
-    rows, which tells how far to look; and none of a wave of which the rows tell all frequencies.
+    """Those of the candidates `waves` of which a line stands out in the residual of the outputs, by
+    linear prediction; at that line, in all their forms. None without the `space` of rows, which
+    bounds the frequencies; and none of a wave of which the rows resolve all frequencies.
     """
     found: list[Candidate] = []
     if space is None:
@@ -377,12 +379,13 @@ def _line(
     task: Task, space: EquationSpace, trial: Trial, candidate: Candidate
 ) -> tuple[float, float, int] | None:
     """The frequency of the strongest line of a candidate, in Hz or cycles per turn, the lowest that
-    is a line, and how many can be told from one another; None where none takes away a material
-    share, and twice what any other does: what drifts looks like many slow waves. And where there
-    are more rows, those that overlap counted once, than frequencies, or too many to simulate.
+    is a line, and how many can be resolved; None where none reduces the sum of squares by a
+    material share, and twice as much as any other: what drifts looks like many slow waves. And
+    where there are more rows, those that overlap counted once, than frequencies, or too many to
+    simulate.
 
-    A step of half of what tells two apart dims a line between by a fifth; then it is looked for
-    beside the strongest.
+    A step of half the resolution attenuates a line between by a fifth; the neighbourhood of the
+    strongest is scanned again.
     """
     span, usual, rows = _place(space, trial, candidate)
     lowest, highest = band(space, candidate, span, usual)
@@ -405,7 +408,7 @@ def _strongest(
     material: float,
 ) -> float | None:
     """The frequency of the strongest line of `_line`, from the lowest to the highest, where it
-    takes away a `material` share.
+    reduces the sum of squares by a `material` share.
     """
     away = stacked_jacobian(trial.fit)
     residual = projected_off(stacked_residual(trial.fit)[:, None], away)[:, 0]
@@ -427,7 +430,7 @@ def _strongest(
 
 def _place(space: EquationSpace, trial: Trial, candidate: Candidate) -> tuple[float, float, int]:
     """How far the place goes that a wave is locked to, in s or turns, how fast it usually goes as
-    it moves, per s (an axis without rows: 1 rad/s), and how many rows tell of it.
+    it moves, per s (an axis without rows: 1 rad/s), and how many rows there are of it.
     """
     assert candidate.locked is not None
     runs, own = trial.fit.runs, axes_of(space, candidate)
@@ -448,7 +451,7 @@ def _left(
     residual: FloatArray,
     away: FloatArray,
 ) -> float:
-    """Share of the square of a `residual` [n] that is left beside a wave of some frequency in any
+    """Share of the square of a `residual` [n] that remains beside a wave of some frequency in any
     of its shapes; both projected off the columns `away` [n, nf].
     """
     assert candidate.locked is not None

@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import DECLARED_VALUE, Candidate
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain
-from ptp_symbolic.numeric.diagnose.noise_floor import Floor
+from ptp_symbolic.numeric.diagnose.noise_floor import NoiseFloor
 from ptp_symbolic.numeric.diagnose.regression import gain_along_motion
-from ptp_symbolic.numeric.diagnose.seeker import Search
+from ptp_symbolic.numeric.diagnose.stepwise import Search
 from ptp_symbolic.numeric.diagnose.trial import Trial, ranked
 from ptp_symbolic.numeric.diagnose.verdict import (
     EXPLAINED,
@@ -228,8 +228,8 @@ _PART = re.compile(r"(\w+_)(sin|cos)(\d?)(_\w+)")  # a part of a wave of `harmon
 
 def sizes_of(after: Trial, intervals: Mapping[str, Estimate]) -> dict[str, str]:
     """How large every named effect of the trial `after` is, by its key: of the parameters that
-    switch it on the one that is clearest of zero, of a wave the amplitude, with its number of
-    cycles where that was found, of what nothing switches off its first one; angles in degrees.
+    switch it on the most significant one, of a wave the amplitude, with its number of cycles where
+    that was found, of what nothing switches off its first one; angles in degrees.
     """
     units, found = after.fit.model.units, {}
     for c in after.candidates:
@@ -237,7 +237,7 @@ def sizes_of(after: Trial, intervals: Mapping[str, Estimate]) -> dict[str, str]:
             continue
         shown = c.defining or c.free[:1]
         free = max(
-            shown, key=lambda f: _clear_of_zero(intervals[f.name], c.vanishing.get(f.name, 0.0))
+            shown, key=lambda f: _significance(intervals[f.name], c.vanishing.get(f.name, 0.0))
         )
         name, value = _amplitude(free.name, c, intervals)
         found[c.key] = f"{name} = {_written(value, units[free.name])}"
@@ -268,14 +268,14 @@ def _written(value: float, unit: str) -> str:
     return f"{value:.3g} {unit}".removesuffix(" 1")
 
 
-def _clear_of_zero(estimate: Estimate, vanishing: float) -> float:
+def _significance(estimate: Estimate, vanishing: float) -> float:
     """Distance of a value from the one that switches its effect off, in widths of its interval."""
     width = estimate.upper - estimate.lower
     known = np.isfinite(width) and width > 0.0
     return abs(estimate.value - vanishing) / width if known else 0.0
 
 
-SMALL = "The deviation is statistically clear but small."
+SMALL = "The deviation is statistically significant but small."
 
 
 def headline(found: Verdict, errors: dict[str, Any], sizes: Mapping[str, str]) -> str:
@@ -302,24 +302,25 @@ def headline(found: Verdict, errors: dict[str, Any], sizes: Mapping[str, str]) -
         sentences = [f"{begin}; validation error {before} to {after}{taken}."]
         sentences += _mostly_in_one_run(errors["validate"]["after"]["without"])
         sentences += [SMALL for c in found.final.candidates if _is_small(c, found.final)][:1]
-        alike = {key: ", ".join(keys) for key, keys in found.confusable.items() if keys}
+        alternatives = {key: ", ".join(keys) for key, keys in found.confusable.items() if keys}
         alone = len(found.final.candidates) == 1
         sentences += [
             f"In these logs {'it' if alone else key} is indistinguishable from: {others}."
-            for key, others in alike.items()
+            for key, others in alternatives.items()
         ]
         if found.word == PARTLY:
             sentences.append(f"The noise floor is {floor}: part of the residual is unexplained.")
         return " ".join(sentences)
-    text = f"Something is missing, and no known effect could be confirmed: {_most_left(errors)}."
+    left = _residual_in_words(errors)
+    text = f"Something is missing, and no known effect could be confirmed: {left}."
     if found.closest is not None:
         text += f" The closest candidate, not confirmed: {' + '.join(found.closest.keys)}."
     return text
 
 
-def _most_left(errors: Mapping[str, Any]) -> str:
-    """What the declared model leaves beside the floor: of the validation runs, or of the training
-    runs where these alone show more than noise.
+def _residual_in_words(errors: Mapping[str, Any]) -> str:
+    """The residual of the declared model beside the noise floor: of the validation runs, or of the
+    training runs where these alone show more than noise.
     """
 
     def is_at_floor(part: str) -> bool:
@@ -341,7 +342,7 @@ def _over_windows(error: Mapping[str, Any]) -> str:
 
 
 def _mostly_in_one_run(without: Mapping[str, Any] | None) -> list[str]:
-    """Where most of the error after lies in one run or window: which, and what the others leave."""
+    """Where most of the error lies in one run or window: which, and the error of the others."""
     if without is None:
         return []
     return [
@@ -398,9 +399,9 @@ def repeatability_table(runs: Sequence[Run], units: Mapping[str, str]) -> dict[s
     }
 
 
-def error_table(parts: dict[str, tuple[Fit, Fit]], floor: Floor) -> dict[str, Any]:
+def error_table(parts: dict[str, tuple[Fit, Fit]], floor: NoiseFloor) -> dict[str, Any]:
     """Errors of each part ("train", "validate") by the declared model and by the final one, and of
-    the floor.
+    the noise floor.
     """
     table: dict[str, Any] = {"definition": DEFINITION}
     for name, (before, after) in parts.items():
@@ -473,9 +474,11 @@ def ranking(
     the declared model in prediction, and why it was accepted or not; then the candidates that were
     compared along the measured motion alone.
     """
-    rivals = [r.trial for r in found.rivals]
+    alternatives = [r.trial for r in found.alternatives]
     trials = [
-        t for t in (found.compared, *rivals, search.chosen, *search.tried.others) if t.candidates
+        t
+        for t in (found.compared, *alternatives, search.chosen, *search.tried.others)
+        if t.candidates
     ]
     best = [t for t in ranked(trials) if np.isfinite(t.fit.cost)]
     kept: dict[tuple[str, ...], Trial] = {}
@@ -546,10 +549,10 @@ def _why(search: Search, found: Verdict, trial: Trial) -> str:
         if found.is_along_motion:
             return "every effect in it is significant in the torque along the measured motion"
         return "every effect in it is significant, and no other effect improves it"
-    rival = next((r for r in found.rivals if r.trial.keys == trial.keys), None)
-    if rival is not None:
+    other = next((r for r in found.alternatives if r.trial.keys == trial.keys), None)
+    if other is not None:
         noise = "its residual is within the propagated noise of the inputs"
-        return noise if rival.excused else "predicts as well as the accepted set"
+        return noise if other.is_within_input_noise else "predicts as well as the accepted set"
     refused = [f"{key} {why}" for key, why in found.refused.items() if key in trial.keys]
     if refused:
         return "; ".join(refused)

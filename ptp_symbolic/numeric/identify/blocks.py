@@ -81,8 +81,9 @@ def trimmed_mean(values: FloatArray, weight: FloatArray, share: float) -> FloatA
 def robust_tuning(pairs: Sequence[tuple[Evaluation, Block | None]], below: float) -> float:
     """Tuning constant of the loss: the root mean square at which a block counts half.
 
-    Infinite for a few blocks, and where the usual one leaves `below` standard deviations or more:
-    far from the noise the blocks that leave most may be those that show what is missing.
+    Infinite for a few blocks, and where the median one has a residual of `below` standard
+    deviations or more: far from the noise the blocks with the largest residuals may be those that
+    show what is missing.
     """
     if any(e.failed for e, _ in pairs):
         return np.inf
@@ -161,8 +162,8 @@ def autocovariance(series: Sequence[FloatArray]) -> FloatArray:
 
 
 def longest_block(logs: Sequence[FloatArray]) -> float:
-    """Samples in a block for residuals `logs` [n, signals]: those of the signal that asks for most
-    (see `block_length`).
+    """Samples in a block for residuals `logs` [n, signals]: of the signal with the longest (see
+    `block_length`).
     """
     return max(block_length(list(signal)) for signal in zip(*(log.T for log in logs), strict=True))
 

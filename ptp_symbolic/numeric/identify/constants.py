@@ -20,7 +20,7 @@ LAGS = 25  # samples; lags of the residual tests; usual (Ljung, 1999, 16.6)
 MATERIAL = 0.1  # 1; share of a loss, or error, below which nothing earns a name or counts; stated
 MOST = 0.5  # 1; share that is most of a whole; definition
 PLAUSIBLE_FACTOR = 2.0  # 1; by which a declared value may be off, a start by its square; stated
-ABOVE_NOISE = 1.0 + MATERIAL  # 1; rms over the floor from which on more than noise is left; derived
+ABOVE_NOISE = 1.0 + MATERIAL  # 1; rms over the noise floor that is more than noise; derived
 UNALIKE = 1e-3  # 1; false alarms of the test for larger validation windows; stated level
 FEWEST_BLOCKS = 12  # 1; blocks: Student's interval is then 12 % wider than a normal one; derived
 MOST_BLOCKS = 200  # 1; blocks: the error of a standard deviation is then 5 %; derived
@@ -66,7 +66,7 @@ LEAST_CYCLES = 3  # 1/range; slower waves are like any slow change, or a taper (
 BINS_PER_CYCLE = 4.0  # 1; of the highest frequency of a scan: a bin dims it by 10 %; derived
 ATTENUATED = 2.0  # 1/window; of such a wave an average leaves 11 %; derived
 DECLARED_AMOUNT = 0.05  # 1; share by which a declared value is changed to see its effect; scaled
-BINS = 16  # 1; of a map of what is left, of half a gap; definition
+BINS = 16  # 1; of a map of the residual, of half a gap; definition
 
 # Noise of a signal
 ORDER = 5  # 1; differences: a motion at a tenth of the sampling rate leaves 0.6 %; derived

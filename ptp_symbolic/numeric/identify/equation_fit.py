@@ -41,7 +41,7 @@ def blocks_in_time(run: IntArray, time: FloatArray) -> IntArray:
 
 def robust_scale(rows: FloatArray, equation: IntArray) -> FloatArray:
     """Standard deviation [n] of each row, by the median of its `equation` [n] (Huber, 1981); rows
-    that leave nothing tell none: a current that is rounded is exactly zero while a drive is off.
+    without a residual give none: a current that is rounded is exactly zero while a drive is off.
     """
     scale = np.ones(len(rows))
     for number in np.unique(equation):

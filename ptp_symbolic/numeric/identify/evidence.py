@@ -112,7 +112,7 @@ class Allowance:
         return self.work.samples - self.begun > self.samples or self.is_out_of_time
 
     def rest(self, least: float) -> "Allowance":
-        """What is left of it now, but the share `least` of both limits at least."""
+        """What remains of it now, but the share `least` of both limits at least."""
         done, now = self.work.samples, time.monotonic()
         samples = max(self.samples - (done - self.begun), least * self.samples)
         seconds = max(self.seconds - (now - self.since), least * self.seconds)

@@ -191,8 +191,8 @@ def fitted_starts(
     usual: float = 1.0,
 ) -> list[Optimum]:
     """The start of every run fitted by itself, from the best of those `known` of it, of its guesses
-    with the gears in place, and of the end of the window before it; and from the next, unless no
-    more is left than noise or than the `usual` mean square of all runs, or the search is `brief`.
+    with the gears in place, and of the end of the window before it; and from the next, unless the
+    residual is within noise or the `usual` mean square of all runs, or the search is `brief`.
     Raises InputError for values out of bounds.
     """
     most = ABOVE_NOISE * max(1.0, usual)
@@ -237,7 +237,7 @@ class _Starts:
         in_series: bool,
     ) -> Optimum:
         """The best fit of a run's start; `before` is that of the window before it. The first window
-        of a series that leaves more than that is begun at other places in its gaps too.
+        of a series whose residual is larger is started at other places in its gaps too.
         """
         simulations = simulations_of(self.model, [run], (), self.values, self.effort, None)
         problem = problem_of(simulations, self.effort)
@@ -363,8 +363,8 @@ def _place(
 class Fit:
     """A fit: parameter `values` (all of the model), start unknowns `z` and evaluations per run.
 
-    `shaken` are, per run, changes [k * ny, replays] of the residual by noise of the inputs, without
-    what the start unknowns can take up; none where they were not looked for.
+    `by_input_noise` are, per run, changes [k * ny, replays] of the residual by noise of the inputs,
+    without what the start unknowns can take up; none where they were not looked for.
     """
 
     model: Model
@@ -377,7 +377,7 @@ class Fit:
     failed: str | None = None
     tolerance: Tolerance = DEFAULT_TOLERANCE
     misleading: tuple[Shift, ...] | None = None
-    shaken: Sequence[FloatArray] = ()
+    by_input_noise: Sequence[FloatArray] = ()
 
     def rms_counts(self) -> float:
         """Root mean square of the residual of all encoder signals, in counts (see `run_counts`)."""

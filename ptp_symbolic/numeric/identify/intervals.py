@@ -1,15 +1,15 @@
 """Confidence intervals that allow for residuals correlated in time.
 
-The residuals of a simulation error fit are never white: what the noise of an input leaves in an
-angle may last for a whole run. The covariance is that of a jackknife over a few long blocks of
+The residuals of a simulation error fit are never white: the noise of an input, propagated to an
+angle, may last for a whole run. The covariance is that of a jackknife over a few long blocks of
 time, the unknown starts projected out. Intervals never get narrower than those of white noise, as
-large as declared or as what is left, or of noise with the colour of what is left, beside the noise
-of the inputs as replays carry it to the outputs.
+large as declared or as the residual, or of noise with the autocorrelation of the residual, beside
+the propagated noise of the inputs.
 
-Errors of a fit under noise that has the same colour everywhere.
+Errors of a fit under stationary noise.
 
-What few samples tell, as those about one breakaway, no block of time can be left out to judge. The
-covariance of the residual over all samples says how far such a sum scatters.
+Of what few samples show, as those about one breakaway, no block of time can be left out to judge
+it. The covariance of the residual over all samples says how far such a sum scatters.
 
 Values that differ from log to log.
 
@@ -94,9 +94,9 @@ def reach_between_logs(logs: Sequence[tuple[FloatArray, FloatArray]], signals: i
     and McCaffrey, 2002) with Student's distribution; from the residual [k * signals] of every log
     and its derivatives [k * signals, nf] by the parameters, at their common optimum.
 
-    Zero where logs do not differ clearly (see `chance_of_scatter`), and for all parameters where
-    there are fewer than three, or where one of them alone tells some combination of parameters:
-    without it, the errors of all others would show.
+    Zero where logs do not differ significantly (see `chance_of_scatter`), and for all parameters
+    where there are fewer than three, or where one of them alone tells some combination of
+    parameters: without it, the errors of all others would show.
     """
     nothing = np.zeros(logs[0][1].shape[1])
     if len(logs) < 3:
@@ -156,8 +156,8 @@ def joint_region(fit: Fit) -> FloatArray:
     Directions that the data do not see are left out.
 
     Axes count as uncorrelated, as they are beside white noise. Were all k of them the same normal
-    number z, as where one slow mode is left that all follow, the truth would be held where k z^2
-    is below the 99 % quantile of chi squared with k degrees: in 97 % for two, in 87 % for ten.
+    number z, as where one slow mode remains that all follow, the truth would be held where k z^2 is
+    below the 99 % quantile of chi squared with k degrees: in 97 % for two, in 87 % for ten.
     """
     axes, variances, degrees = axes_of(fit)
     tail = 0.5 * TEST_ALARM
@@ -210,7 +210,7 @@ class Estimate:
 @recorded(Estimate)
 def estimates(fit: Fit) -> tuple[Estimate, ...]:
     """Values of the free parameters of `fit` with 95 % confidence intervals (Student's t), of the
-    mean over logs where these differ clearly.
+    mean over logs where these differ significantly.
     """
     if not fit.free:
         return ()
@@ -293,10 +293,10 @@ def chance_of(
     a `covariance` [k, k] that has `degrees` [k] of freedom: twice the smaller of two (Bonferroni).
 
     One is Hotelling's T^2 (1931) with the fewest degrees: coordinates that trade for each other are
-    clear together. The other is Student's t of the clearest coordinate with its own degrees, times
-    k: where one block tells one of them alone, the others may be beyond doubt. Coordinates that are
-    not `seen` [k] alone, only in combination, have no t. One without any error is told by nothing
-    and left out; 1 where all are.
+    significant together. The other is Student's t of the most significant coordinate with its own
+    degrees, times k: where one block tells one of them alone, the others may be beyond doubt.
+    Coordinates that are not `seen` [k] alone, only in combination, have no t. One without any error
+    is told by nothing and left out; 1 where all are.
     """
     error = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     told = error > NOTHING * np.abs(away)
@@ -400,10 +400,10 @@ def _squared_reach_of_inputs(fit: Fit, inverse: FloatArray, columns: FloatArray)
     """Squared half width [nf] of the 95 % intervals that the noise of the inputs alone makes: every
     replay of every run shifts the coordinates, each run independently.
     """
-    if not fit.shaken:
+    if not fit.by_input_noise:
         return np.zeros(len(inverse))
-    ends = np.cumsum([len(changes) for changes in fit.shaken])
-    parts = zip(np.split(columns, ends[:-1]), fit.shaken, strict=True)
+    ends = np.cumsum([len(changes) for changes in fit.by_input_noise])
+    parts = zip(np.split(columns, ends[:-1]), fit.by_input_noise, strict=True)
     every = [(c.T @ changes, max(changes.shape[1], 1)) for c, changes in parts]
     shifts = np.column_stack([inverse @ moved / np.sqrt(count) for moved, count in every]).T
     reach = stats.t.ppf(0.975, degrees_of_freedom(shifts, centred=False))

@@ -1,9 +1,10 @@
-"""The noise of a measured signal: how large, and how it is coloured.
+"""The noise of a measured signal: how large, and how it is correlated in time.
 
 Differences of high order of a signal remove its smooth motion and keep its white noise, which gives
-a first size. What a model leaves shows the colour: its spectrum above the frequencies of the motion
-is that of a first-order autoregression plus white noise, whose likelihood (Whittle, 1953) gives the
-whole variance, also below. Before any fit, only the upper half of the spectrum is free of motion.
+a first size. The residual of a model shows its autocorrelation: its spectrum above the frequencies
+of the motion is that of a first-order autoregression plus white noise, whose likelihood (Whittle,
+1953) gives the whole variance, also below. Before any fit, only the upper half of the spectrum is
+free of motion.
 
 Whether residuals scatter as noise does, which does not know what the machine does.
 
@@ -19,15 +20,14 @@ alone. What a model lacks is slow, too, but stands still there.
 How well a machine repeats itself: what differs between runs with equal inputs.
 
 No model that answers to its inputs alone can tell such runs apart, so that their difference is a
-floor that needs no model: noise, and all that the machine does not do alike twice.
+noise floor that needs no model: noise, and all that the machine does not do alike twice.
 
-Innovations: what is left of residuals that are correlated in time once each is predicted from
-those before it.
+Innovations: residuals that are correlated in time, less their prediction from those before.
 
-Where a model leaves more than noise, its residuals are coloured, and least squares credits an
-effect with whatever slow drift it can follow. In the innovations of what is left every frequency
-counts by how well it is known: generalized least squares (Aitken, 1935), with the colour of an
-autoregression (Yule, 1927; Walker, 1931), its order by Akaike's criterion (1974).
+Where the residual of a model exceeds the noise, it is autocorrelated, and least squares credits an
+effect with whatever slow drift it can follow. In the innovations every frequency counts by how well
+it is known: generalized least squares (Aitken, 1935), with the correlation of an autoregression
+(Yule, 1927; Walker, 1931), its order by Akaike's criterion (1974).
 """
 
 import itertools
@@ -199,7 +199,7 @@ def coloured_noise(series: Sequence[FloatArray], least: float) -> Noise:
 
 def most_in_quietest(runs: Sequence[Sequence[FloatArray]]) -> float:
     """The largest standard deviation, at 99 %, that noise of any colour may have which all of
-    `runs`, each in residual series [n], have in common: none of them can leave less.
+    `runs`, each in residual series [n], have in common: the residual of none can be smaller.
 
     Mean squares of an autoregression with pole a vary as those of n (1 - a^2) / (1 + a^2) normal
     numbers that are independent (Bartlett, 1946); a is the largest that is tried.

@@ -6,7 +6,7 @@ axis), would be judged by that noise; it is cut into windows with starts of thei
 
 Windows of a log that follow one another: each begins where the simulated one before it ended.
 
-Runs replayed with the noise of their inputs once more: what it leaves in the outputs, and what a
+Runs replayed with the noise of their inputs once more: how it propagates to the outputs, and what a
 fit follows of it.
 """
 
@@ -97,9 +97,9 @@ def replayed_squares(
     declared_noise: Sequence[float | None],
     executor: Executor | None = None,
 ) -> FloatArray:
-    """What input noise leaves in the residual of a perfect model: mean squares [REPEATS, runs, ny]
-    of the replays of every run, in units of the noise of every signal (see `Run.weight`); nan where
-    a run cannot be simulated. What its unknown start can take up is projected out.
+    """The propagated input noise in the residual of a perfect model: mean squares [REPEATS, runs,
+    ny] of the replays of every run, in units of the noise of every signal (see `Run.weight`); nan
+    where a run cannot be simulated. What its unknown start can take up is projected out.
     """
 
     def squares(number: int) -> FloatArray:
@@ -123,8 +123,8 @@ def propagated_noise(
     declared_noise: Sequence[float | None],
     executor: Executor | None = None,
 ) -> FloatArray:
-    """Root mean square [runs, ny] of what input noise leaves, over all replays of
-    `replayed_squares` but the one that leaves most, which may stick elsewhere.
+    """Root mean square [runs, ny] of the propagated input noise, over all replays of
+    `replayed_squares` but the largest one, which may stick elsewhere.
     """
     squares = np.sort(replayed_squares(model, runs, z, p, declared_noise, executor), axis=0)
     return np.asarray(np.sqrt(np.mean(squares[:-1], axis=0)))
@@ -142,31 +142,31 @@ def estimable(
 def with_input_noise(
     fit: Fit, declared_noise: Sequence[float | None], executor: Executor | None = None
 ) -> Fit:
-    """`fit` with what the noise of its inputs, as declared or as their samples show it, leaves in
-    its residuals: intervals allow for it. A fit follows in part what that noise leaves, and the
-    fewer runs tell, the more: the residual is no measure of it then.
+    """`fit` with the propagated noise of its inputs, as declared or as their samples show it, in
+    its residuals: intervals allow for it. A fit follows a part of that noise, and the fewer runs
+    there are, the more: the residual is no measure of it then.
 
-    As many replays as make REPLAYS of all runs or windows together. Those that change far more
-    than usual, as where the machine sticks elsewhere, weigh less, as they do in the fit.
+    As many replays as make REPLAYS of all runs or windows together. Those that change far more than
+    usual, as where the machine sticks elsewhere, weigh less, as they do in the fit.
     """
     if not fit.free or fit.failed:
         return fit
 
     def changed() -> Sequence[FloatArray]:
-        return _shaken(fit, declared_noise, executor)
+        return _by_input_noise(fit, declared_noise, executor)
 
-    shaken: Sequence[FloatArray]
+    by_input_noise: Sequence[FloatArray]
     if is_recording():
-        shaken = derived("input noise", (fit, declared_noise), changed)
+        by_input_noise = derived("input noise", (fit, declared_noise), changed)
     else:
-        shaken = changed()
-    return replace(fit, shaken=shaken) if len(shaken) else fit
+        by_input_noise = changed()
+    return replace(fit, by_input_noise=by_input_noise) if len(by_input_noise) else fit
 
 
-def _shaken(
+def _by_input_noise(
     fit: Fit, declared_noise: Sequence[float | None], executor: Executor | None
 ) -> Sequence[FloatArray]:
-    """The `shaken` of `with_input_noise`."""
+    """The `by_input_noise` of `with_input_noise`."""
     p = fit.model.parameter_vector(dict(fit.values))
     replays = -(-REPLAYS // len(fit.runs))
 
@@ -259,9 +259,9 @@ def cut_where_errors_grow(
     declared_noise: Sequence[float | None],
     executor: Executor | None = None,
 ) -> tuple[Run, ...]:
-    """The runs, those cut into windows in which the noise of the inputs leaves more than the noise
-    of the signals and may be most of the residual `left` [runs, ny], or in which a gear rattles:
-    breakaways and bounces amplify any error until nothing can be predicted.
+    """The runs, those cut into windows in which the propagated noise of the inputs exceeds the
+    noise of the signals and may be most of the residual `left` [runs, ny], or in which a gear
+    rattles: breakaways and bounces amplify any error until nothing can be predicted.
     """
     grows = _errors_grow(model, tuple(runs), tuple(z), left, p, declared_noise, executor)
     found: list[Run] = []

@@ -4,8 +4,8 @@ What a search has tried: a hundred trials, whose Jacobians are large, and where 
 
 Every candidate by itself over a few short windows: what the motion alone does not show.
 
-Windows forget: neither a rest nor a bounce in a gap that ends a sample late leads a fit astray
-there, so that a few iterations tell how much a candidate is worth, and at which values.
+Windows forget: neither a rest nor a bounce in a gap that ends a sample late misleads a fit there,
+so that a few iterations show the worth of a candidate, and at which values.
 
 Every candidate of a set in the simplest of its forms that will do.
 
@@ -27,7 +27,7 @@ from ptp_symbolic.numeric.diagnose.candidates import (
 )
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain, p_value
 from ptp_symbolic.numeric.diagnose.noise_floor import Carried, carried_noise, leaves_white_noise
-from ptp_symbolic.numeric.diagnose.proposals import Proposals, start_for
+from ptp_symbolic.numeric.diagnose.proposals import ProposedSets, start_for
 from ptp_symbolic.numeric.diagnose.refits import (
     along,
     beside_declared,
@@ -50,8 +50,8 @@ from ptp_symbolic.numeric.diagnose.trial import (
     fitted,
     forms_of,
     halving,
-    is_alike,
     is_near,
+    is_same_end,
     ranked,
 )
 from ptp_symbolic.numeric.identify.constants import (
@@ -69,7 +69,7 @@ from ptp_symbolic.numeric.identify.evidence import Deferred
 @dataclass(frozen=True, eq=False)
 class Tried:
     """Trials that are not chosen, `others`; those fitted to their end; and by the forms of its
-    candidates (see `forms_of`) where every set ends that was begun anew from the rows.
+    candidates (see `forms_of`) the end of every set that was restarted from the rows.
     """
 
     others: list[Trial] = field(default_factory=list)
@@ -93,10 +93,11 @@ class Step:
 class Search:
     """What the search found: the declared model, the chosen set (the same where nothing is added),
     what every member of it gains, all that was tried, and the noise of the inputs as the best model
-    so far carries it to the outputs. `task` has the candidates with a frequency where a line was
+    so far propagates it to the outputs. `task` has the candidates with a frequency where a line was
     found, and without those that have none. The search `is_cut_short` where its time was over at
-    its end: some moves may not have been tried. The declared model `is_led` where windows have led
-    it too, and `is_taken_over` where it was found from the end of a set, not from its own starts.
+    its end: some moves may not have been tried. The declared model `is_over_windows` where it was
+    fitted over windows too, and `is_taken_over` where it was found from the end of a set, not from
+    its own starts.
     """
 
     task: Task
@@ -104,10 +105,10 @@ class Search:
     chosen: Trial
     members: tuple[Step, ...]
     tried: Tried
-    proposals: Proposals
+    proposals: ProposedSets
     carried: Carried
     is_cut_short: bool
-    is_led: bool = True
+    is_over_windows: bool = True
     is_taken_over: bool = False
 
 
@@ -118,15 +119,15 @@ class Refusals:
     """
 
     why: dict[str, str] = field(default_factory=dict)
-    lawless: set[str] = field(default_factory=set)
+    contradicting: set[str] = field(default_factory=set)
 
     def note(self, key: str, why: str, breaks_law: bool = False) -> None:
         """Note the last reason: in another set a candidate may be refused for another one."""
         self.why[key] = why
         if breaks_law:
-            self.lawless.add(key)
+            self.contradicting.add(key)
         else:
-            self.lawless.discard(key)
+            self.contradicting.discard(key)
 
 
 def step_of(trial: Trial, candidate: Candidate, without: Trial) -> Step:
@@ -142,18 +143,18 @@ def looked_at(candidates: Sequence[Candidate], added: Sequence[Candidate]) -> in
 
 
 def is_earned(earned: Gain, p: float, tests: int, material: float) -> bool:
-    """Whether a gain is at least the share `material`, and clear over so many `tests` by the values
-    of its parameters (see `p_value`), or by how much better it predicts blocks, or by how many
-    (Bonferroni): parameters that trade for each other may each be anything while their effect is
-    beyond doubt.
+    """Whether a gain is at least the share `material`, and significant over so many `tests` by the
+    values of its parameters (see `p_value`), or by how much better it predicts blocks, or by how
+    many (Bonferroni): parameters that trade for each other may each be anything while their effect
+    is beyond doubt.
     """
     chance = 3.0 * min(p, earned.chance, earned.by_rank)
     return earned.share >= material and earned.lower > 0.0 and chance < FALSE_ALARM / max(tests, 1)
 
 
-def worth_keeping(trials: Sequence[Trial], best: Trial) -> list[Trial]:
+def best_of_each_set(trials: Sequence[Trial], best: Trial) -> list[Trial]:
     """The best trial of every set. Of those that are far behind `best` (see `is_near`) only tables
-    still ask what they gain: single precision is enough for their Jacobians.
+    still show their gain: single precision is enough for their Jacobians.
     """
     return [t if is_near(t, [best]) else _lighter(t) for t in ranked(trials)]
 
@@ -183,14 +184,14 @@ def _in_single(evaluations: Sequence[Evaluation]) -> tuple[Evaluation, ...]:
 
 def screened(
     task: Task,
-    found: Proposals,
+    found: ProposedSets,
     kept: Sequence[Candidate],
     wanted: Sequence[Candidate],
     values: Mapping[str, float],
 ) -> list[Trial]:
     """The set `kept` with those of the candidates `wanted`, and with what they bring along, that
     fit a few windows of the task best, the best first. A candidate is tried in its simplest and in
-    its fullest form. A fit begins where the rows start the set, or at `values` and the candidate's
+    its fullest form. A fit starts where the rows start the set, or at `values` and the candidate's
     own start, whichever is better, and the windows where they begin without it; after every
     iteration half of the fits go on.
     """
@@ -220,7 +221,7 @@ def screened(
 
 
 @dataclass(eq=False)
-class Seeker:
+class StepwiseSearch:
     """A search, with what was `tried`; `carried` is that of the trial that was `followed` last.
 
     Once the task `is_over`, its moves begin nothing new: they return what they were given, or
@@ -229,49 +230,55 @@ class Seeker:
 
     task: Task
     declared: Trial
-    proposals: Proposals
+    proposals: ProposedSets
     carried: Carried
     tried: Tried = field(default_factory=Tried)
     followed: Trial | None = None
 
-    def among(self, candidates: tuple[Candidate, ...]) -> "Seeker":
+    def among(self, candidates: tuple[Candidate, ...]) -> "StepwiseSearch":
         """The search among other candidates, which knows what was tried so far. One that needs
         another that is not among them has nothing to act on.
         """
         task = replace(self.task, candidates=with_all_they_need(candidates))
-        return Seeker(task, self.declared, self.proposals, self.carried, self.tried)
+        return StepwiseSearch(task, self.declared, self.proposals, self.carried, self.tried)
 
-    def unseen(self, trial: Trial) -> list[Trial]:
-        """The trial with each candidate that the rows cannot show, begun at its response in the
-        outputs and part of the way there.
+    def without_influence(self, trial: Trial) -> list[Trial]:
+        """The trial with each candidate without influence on the rows, started at its response in
+        the outputs and part of the way there.
         """
-        found = [] if self.task.is_over else responses(self.task, trial, self.proposals.unseen)
+        found = (
+            []
+            if self.task.is_over
+            else responses(self.task, trial, self.proposals.without_influence)
+        )
         return [t for r in found[:TRIED] for t in along(self.task, self.proposals, r, trial)]
 
     def follow(self, trial: Trial) -> None:
-        """Let a trial tell what the noise of the inputs leaves: a model that rests shows none."""
+        """Propagate the noise of the inputs through a trial from now on: a model that rests shows
+        none.
+        """
         if trial.candidates and trial is not self.followed:
             self.followed, self.carried = trial, carried_noise(self.task, trial.fit)
 
-    def excusing(self, trial: Trial) -> Carried:
-        """What the noise of the inputs leaves, which excuses what a trial leaves, and what others
-        leave in its place as well. Noise that is declared is carried by the trial itself, which may
-        carry more than others; what differences of the samples tell may be no noise.
+    def input_noise_for(self, trial: Trial) -> Carried:
+        """The propagated noise of the inputs with which the residual of a trial, and of its
+        alternatives, is compared. Declared noise is propagated by the trial itself, which may
+        amplify it more than others; what differences of the samples show may be no noise.
         """
         noise = self.task.input_noise
         if None in noise or not any(noise) or trial is self.followed:
             return self.carried
         return carried_noise(self.task, trial.fit)
 
-    def is_at_noise(self, trial: Trial) -> bool:
-        """Whether a trial leaves white noise alone."""
+    def is_white(self, trial: Trial) -> bool:
+        """Whether the residual of a trial is white noise alone."""
         return leaves_white_noise(trial, self.carried)
 
     def have_answer(self, *trials: Trial) -> bool:
-        """Whether any of them leaves white noise alone, with one candidate at most: no other set
-        fits better, and those as small are compared with it later, in its place.
+        """Whether the residual of any of them is white noise alone, with one candidate at most: no
+        other set fits better, and its alternatives are compared with it later.
         """
-        return any(len(t.candidates) < 2 and self.is_at_noise(t) for t in trials)
+        return any(len(t.candidates) < 2 and self.is_white(t) for t in trials)
 
     def polished(self, trial: Trial) -> Trial:
         """The trial fitted to its end; one that was is not fitted again."""
@@ -281,23 +288,23 @@ class Seeker:
         return trial
 
     def sharpened(self, trial: Trial) -> Trial:
-        """A polished trial fitted with sharp simulations, where only noise is left."""
+        """A polished trial fitted with sharp simulations, where the residual is white."""
         return sharpened(self.task, trial, self.carried)
 
     def restarted(self, trial: Trial) -> Trial:
         """A polished trial, or a better end from where the rows start its set, and from there over
-        short windows: friction makes the misfit of whole runs a staircase. A set that was begun so
-        is not again, unless it begins with values that the rows do not show.
+        short windows: friction makes the deviance of whole runs a staircase. A set that was
+        restarted so is not again, unless it starts with values without influence on the rows.
         """
-        if not trial.candidates or self.task.is_over or self.is_at_noise(trial):
+        if not trial.candidates or self.task.is_over or self.is_white(trial):
             return trial
         known = self.tried.anew.get(forms_of(trial.candidates))
-        unseen = {c.key for c in self.proposals.unseen}
-        if known is not None and (known is trial or unseen.isdisjoint(trial.keys)):
+        without_influence = {c.key for c in self.proposals.without_influence}
+        if known is not None and (known is trial or without_influence.isdisjoint(trial.keys)):
             return ranked([trial, known])[0]
         begun = from_rows(self.task, self.proposals, trial.candidates, trial.values)
         left = halving(self.task, begun, 1)
-        fresh = [t for t in left if is_near(t, [trial]) and not is_alike(t, trial)]
+        fresh = [t for t in left if is_near(t, [trial]) and not is_same_end(t, trial)]
         best = ranked([trial, *(self.polished(t) for t in fresh)])[0]
         self.tried.anew[forms_of(best.candidates)] = best
         return best
@@ -312,11 +319,11 @@ class Seeker:
         return self.polished(trial)
 
     def without(self, trial: Trial, candidate: Candidate, *, briefly: bool = False) -> Trial:
-        """The trial refitted without one of its candidates, and without what needs it; or what is
-        left where the search has come to before, if that is a better place: a candidate gains no
-        more than what it adds to the best fit without it. One that gains next to nothing after a
-        few iterations gains no more at their end, and one that gains nearly all still does: these
-        fits are not brought there. `briefly` it is not begun anew either.
+        """The trial refitted without one of its candidates, and without what needs it; or an
+        earlier fit of that set, if it is better: a candidate gains no more than what it adds to the
+        best fit without it. One that gains next to nothing after a few iterations gains no more at
+        their end, and one that gains nearly all still does: these fits are not brought there.
+        `briefly` it is not restarted either.
         """
         kept = without_member(trial.candidates, candidate)
         if not kept:
@@ -328,7 +335,7 @@ class Seeker:
             smaller = smaller if briefly else self.restarted(smaller)
         same = [t for t in self.tried.others if forms_of(t.candidates) == forms_of(kept)]
         known = ranked([smaller, *same])[0]
-        if not is_alike(known, smaller):
+        if not is_same_end(known, smaller):
             smaller = self.polished(known)
         if ranked([smaller, self.declared])[0] is self.declared:
             smaller = beside_declared(self.task, smaller, self.declared, self.carried)
@@ -336,8 +343,9 @@ class Seeker:
         return smaller
 
     def is_decided_at_end_of(self, smaller: Trial, trial: Trial) -> bool:
-        """Whether the trial gains over a `smaller` set materially as yet, but not most of what that
-        leaves, or most of the little that it leaves unexplained: a fit short of its end may.
+        """Whether the gain of the trial over a `smaller` set is material so far, but below one
+        half, or the smaller set explains most already: a fit that is not at its end may change
+        that.
         """
         share, least = gain(trial, smaller).share, self.task.material
         return share >= least and (share < MOST or gain(smaller, self.declared).share >= MOST)
@@ -351,29 +359,32 @@ class Seeker:
         return self.is_earned(step.gain, step.p_value, [step.candidate])
 
     def is_kept(self, trial: Trial, step: Step) -> bool:
-        """Whether a candidate stays in the set while the search goes on. Where more than noise is
-        left, which hides whether a gain is clear, a material one is enough; a name asks for both.
+        """Whether a candidate stays in the set while the search goes on. Where the residual exceeds
+        the noise, which hides whether a gain is significant, a material one is enough; a name
+        requires both.
         """
-        if self.is_at_noise(trial):
+        if self.is_white(trial):
             return self.is_needed(step)
         return step.gain.share >= self.task.material
 
     def is_earned(self, earned: Gain, p: float, added: Sequence[Candidate]) -> bool:
-        """Whether what is `added` gains materially, and clearly over all that was looked at."""
+        """Whether the gain of what is `added` is material, and significant over all that was
+        compared.
+        """
         return is_earned(earned, p, looked_at(self.task.candidates, added), self.task.material)
 
     def pruned(self, trial: Trial) -> tuple[Trial, list[Step]]:
-        """Take out candidates until all that is left is needed, with its gains: of those that are
-        not needed the one without which the rest fits best, for two that act alike can each be
-        done without while the other is there. Those are refitted first that seem to gain little;
-        without those that seem to gain most, no set is begun anew. A set that gains little over
-        the declared model holds no candidate that gains more.
+        """Drop candidates until every remaining one is needed, with its gains: of those that are
+        not needed the one without which the rest fits best, for of two aliased ones each can be
+        dropped while the other is there. Those are refitted first that seem to gain little; without
+        those that seem to gain most, no set is restarted. A set that gains little over the declared
+        model holds no candidate that gains more.
         """
         while trial.candidates:
             if gain(trial, self.declared).share < self.task.material:
                 return self.declared, []
             steps: list[Step] = []
-            briefly = not self.is_at_noise(trial)
+            briefly = not self.is_white(trial)
             every = trial.candidates
             little = [c for c in every if expected_gain(trial, c.vanishing) < MOST]
             most = [c for c in every if c not in little]
@@ -390,17 +401,17 @@ class Seeker:
         return trial, []
 
     def grown(self, trial: Trial, *, briefly: bool = False) -> Trial | None:
-        """The trial with one more candidate that gains clearly and materially; None if none does.
-        `briefly` one is looked for that takes away most of what is left, by its response alone.
+        """The trial with one more candidate of a material and significant gain; None if there is
+        none. `briefly`, with one that more than halves the sum of squares, by its response alone.
 
-        Where only noise is left, those are tried that the motion alone cannot show. One that
+        Where the residual is white, those are tried that have no influence on the rows. One that
         promises far more than all others is tried before them.
         """
         if self.task.is_over:
             return None
         task = self.task
         least = MOST if briefly else LITTLE
-        wanted = self.proposals.unseen if self.is_at_noise(trial) else task.candidates
+        wanted = self.proposals.without_influence if self.is_white(trial) else task.candidates
         found = [r for r in responses(task, trial, wanted) if r.left < 1.0 - task.material]
         if not found:
             return None
@@ -417,14 +428,15 @@ class Seeker:
         return self.best_earning(begun, trial, least)
 
     def simplest(self, trials: Sequence[Trial]) -> Trial:
-        """The best of trials; of those that leave white noise alone that of fewest parameters."""
-        quiet = [t for t in trials if self.is_at_noise(t)]
+        """The best of trials; of those with a white residual that of fewest parameters."""
+        quiet = [t for t in trials if self.is_white(t)]
         return min(quiet, key=lambda t: len(t.fit.free)) if quiet else ranked(trials)[0]
 
     def best_earning(self, begun: Sequence[Trial], trial: Trial, least: float) -> Trial | None:
-        """The best of trials `begun`, polished, in which what they have more than `trial` gains
-        clearly and materially, and the share `least`; None if there is none. A simpler form may be
-        clear where one that fits better, with parameters that trade for each other, is not.
+        """The best of trials `begun`, polished, in which what they have more than `trial` has a
+        material and significant gain, of the share `least`; None if there is none. A simpler form
+        may be significant where one that fits better, with parameters that trade for each other, is
+        not.
         """
         left = halving(self.task, begun, SCREENED, seen=self.tried.others)
         found = ranked([to_its_end(self.task, t, self.carried) for t in left if is_near(t, left)])
@@ -458,15 +470,15 @@ class Seeker:
         return best if best is not trial else None
 
 
-def simplified(seeker: Seeker, trial: Trial) -> Trial:
-    """Every candidate in the simplest of its forms that loses nothing clear and material. A
-    form is not fitted where linear prediction loses most, and not to its end where that
-    foresees a material loss and most is lost after some iterations.
+def simplified(stepwise: StepwiseSearch, trial: Trial) -> Trial:
+    """Every candidate in the simplest of its forms that loses nothing material and significant. A
+    form is not fitted where linear prediction loses most, and not to its end where that foresees a
+    material loss and most is lost after some iterations.
     """
     for key in trial.keys:
         candidate = next(c for c in trial.candidates if c.key == key)
         simpler = sorted(
-            (c for c in forms(seeker.task, candidate) if len(c.free) < len(candidate.free)),
+            (c for c in forms(stepwise.task, candidate) if len(c.free) < len(candidate.free)),
             key=lambda c: len(c.free),
         )
         for form in simpler:
@@ -475,20 +487,22 @@ def simplified(seeker: Seeker, trial: Trial) -> Trial:
             foreseen = expected_gain(trial, lost)
             if foreseen > MOST:
                 continue
-            smaller = begun_in_form(seeker, trial, candidate, form)
-            if foreseen >= seeker.task.material and gain(trial, smaller).share >= MOST:
+            smaller = begun_in_form(stepwise, trial, candidate, form)
+            if foreseen >= stepwise.task.material and gain(trial, smaller).share >= MOST:
                 continue
-            smaller = seeker.polished(smaller)
-            if not seeker.is_earned(gain(trial, smaller), p_value(trial, lost), ()):
+            smaller = stepwise.polished(smaller)
+            if not stepwise.is_earned(gain(trial, smaller), p_value(trial, lost), ()):
                 trial = smaller
                 break
     return trial
 
 
-def begun_in_form(seeker: Seeker, trial: Trial, candidate: Candidate, form: Candidate) -> Trial:
+def begun_in_form(
+    stepwise: StepwiseSearch, trial: Trial, candidate: Candidate, form: Candidate
+) -> Trial:
     """The trial refitted, by some iterations, with a candidate in another form."""
     dropped = set(candidate.parameters) - set(form.parameters)
-    values = trial.values | {name: seeker.task.fixed[name] for name in dropped}
+    values = trial.values | {name: stepwise.task.fixed[name] for name in dropped}
     candidates = tuple(form if c is candidate else c for c in trial.candidates)
-    task, run = seeker.task, seeker.task.executor
+    task, run = stepwise.task, stepwise.task.executor
     return fitted(task, candidates, values, trial.fit.z, ITERATIONS, trial.fit, executor=run)
