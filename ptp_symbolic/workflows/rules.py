@@ -27,13 +27,14 @@ class Rule:
     """A rule by its `name`, and what it `asks`.
 
     `where` are the constants and functions, as `module:name`, that hold it; without the rule they
-    are as `off` says: a value.
+    are as `off` says: a value. `price` is what is known to go wrong without it, or why it is kept.
     """
 
     name: str
     asks: str
     where: tuple[str, ...]
     off: Any
+    price: str = ""
 
     def targets(self) -> list[tuple[Any, str]]:
         """The modules or classes that hold it, with the name in each. Raises AttributeError for a
@@ -100,66 +101,77 @@ RULES = (
         "A set, or a member of one, reduces the sum of squares by a material share (10 %).",
         _in("preparation", "MATERIAL", package=WORKFLOWS),
         0.0,
+        "13 of 14 sets search on; stated level",
     ),
     Rule(
         "significant",
         "What a member gains is significant at 5 %, over all that was looked at.",
         _in("stepwise", "FALSE_ALARM"),
         np.inf,
+        "387 and 357 need refits; stated level",
     ),
     Rule(
         "most beside a remainder",
         "Where more than noise remains, a member surely explains more of the error than remains.",
         _in("gain", "Gain.is_most"),
         True,
+        "370, 342 and 387 need refits; set 254 (a wrong name)",
     ),
     Rule(
         "in innovations",
         "Where more than noise remains, a member reduces more than slow drift.",
         _in("confirm", "gain_in_innovations"),
         _always(CERTAIN),
+        "safety: slow drift is credited to any effect",
     ),
     Rule(
         "not the noise of the inputs",
         "Without a member, the residual exceeds the propagated noise of the inputs.",
         _in("confirm", "is_within_noise_of_inputs"),
         _always(False),
+        "safety: a torque of 7e-7 N m was named on perfect direct drives",
     ),
     Rule(
         "amount known",
         "Where more than noise remains, the amount of a member differs significantly from zero.",
         _in("confirm", "is_amount_known"),
         _always(True),
+        "342 and 387 need refits; an interval held zero",
     ),
     Rule(
         "not done by others",
         "Where noise alone remains, other parameters within bounds cannot reproduce a member.",
         _in("confirm", "is_reproduced_by_others"),
         _always(False),
+        "log-l (a payload for an inertia that was stuck)",
     ),
     Rule(
         "harmonics",
         "The first harmonic of a member is the largest where it must be.",
         _in("confirm", "first_dominates"),
         _always(True),
+        "definition of such an effect; viscous friction by angle was an encoder's error",
     ),
     Rule(
         "bounds",
         "No parameter of a member ends on a bound.",
         _in("confirm", "at_bound"),
         _always(None),
+        "safety: at the end of its range an effect is another one",
     ),
     Rule(
         "any run left out",
         "More than half of a member is found without any one run.",
         _in("confirm", "depends_on_run"),
         _always(None),
+        "safety: an effect that one run alone shows",
     ),
     Rule(
         "law of the speed",
         "The torque of a member depends on the speed as its law says.",
         (*_in("confirm", "contradicts_its_law"), *_in("along_rows", "contradicts_its_law")),
         _always(False),
+        "set 261 (a wrong name)",
     ),
     Rule(
         "inputs move it",
@@ -170,48 +182,56 @@ RULES = (
             for place in _in(module, "is_moved_by_inputs")
         ),
         _always(True),
+        "safety: free initial states alone follow the logs",
     ),
     Rule(
         "better alternatives",
         "No other set of the same size predicts significantly better.",
         _in("verdict", "better_alternative"),
         _always(None),
+        "safety: the best of indistinguishable sets is named",
     ),
     Rule(
         "smaller alternatives",
         "No alternative with fewer effects has a white residual.",
         _in("verdict", "smaller_alternative"),
         _always(None),
+        "safety: two effects where one will do",
     ),
     Rule(
         "simplest alternative",
         "Of one effect and its alternatives the one with the fewest parameters is named.",
         _in("verdict", "simplest_alternative"),
         _as_it_is,
+        "definition: fewest parameters of a group",
     ),
     Rule(
         "all alternatives",
         "Effects that resemble a named one are refitted in its place, and may form a group.",
         _in("verdict", "refitted_alternatives"),
         _always([]),
+        "safety: a group in place of one name",
     ),
     Rule(
         "alternatives within the noise of the inputs",
         "An alternative within the propagated noise of the inputs is not refuted.",
         _in("groups", "is_within_noise_of_inputs"),
         _always(False),
+        "set 189 (a wrong name)",
     ),
     Rule(
         "ambiguous values",
         "Where more than noise remains, no declared value is blamed that has alternatives.",
         _in("verdict", "ambiguous_value"),
         _always(None),
+        "safety: declared values imitate much",
     ),
     Rule(
         "every member validated",
         "The validation runs are not predicted significantly better without a member.",
         _in("verdict", "rejected_on_validation"),
         _always(None),
+        "safety: an effect that validation runs contradict",
     ),
     Rule(
         "validated",
@@ -221,134 +241,157 @@ RULES = (
             *_in("structure_choice", "is_validated", package=WORKFLOWS),
         ),
         _always(True),
+        "safety: names hold on runs that were never fitted",
     ),
     Rule(
         "unusual noise validated",
         "Where training runs show unusually large noise, validation runs gain significantly.",
         _in("verdict", "exceeds_usual_noise"),
         _always(False),
+        "set 273 (a wrong name)",
     ),
     Rule(
         "values of the joint region",
         "Validation runs are judged with values in the joint confidence region.",
         _in("verdict", "left_by_best_values"),
         _left_as_fitted,
+        "set 271 (explained by a wrong name)",
     ),
     Rule(
         "windows alike",
         "Residuals of validation windows rank no higher than those of training windows (0.1 %).",
         _in("gain", "UNALIKE"),
         -1.0,
+        "safety: a lack in some windows alone",
     ),
     Rule(
         "no run far off",
         "The residual of no validation run exceeds eight times its noise.",
         _in("gain", "NEARBY"),
         np.inf,
+        "safety: a lack in one run alone",
     ),
     Rule(
         "colour of the noise",
         "The noise floor has the autocorrelation of the residual, as far as rests and runs allow.",
         _in("noise_floor", "_of_its_colour"),
         _white,
+        "413, 386, 418, 370, 346 and 342 need refits",
     ),
     Rule(
         "along the motion",
         "Where more than noise remains, a set grows by what gains in the torque along the motion.",
         _in("verdict", "extended_along_motion"),
         _always(None),
+        "EMPS (friction beside friction, a delay)",
     ),
     Rule(
         "declared model over windows",
         "Gains are those over the declared model fitted over windows too.",
         _in("verdict", "with_declared_over_windows"),
         _given(0),
+        "log-d needs a refit",
     ),
     Rule(
         "structure identifiable",
         "Some parameter of an added structure is identifiable.",
         _in("structures", "is_identifiable"),
         _always(True),
+        "safety: a structure of which no parameter is known",
     ),
     Rule(
         "simpler structures",
         "Of structures that predict as well the one with the fewest parameters is followed.",
         _in("structures", "_is_as_good"),
         _always(False),
+        "definition: fewest parameters of equals",
     ),
     Rule(
         "alternative structures",
         "Structures that predict as well as the chosen one form a group with it.",
         _in("structure_choice", "alternatives", package=WORKFLOWS),
         _always([]),
+        "safety: a group in place of one name",
     ),
     Rule(
         "simplest forms",
         "Every member has the simplest form that loses nothing material and significant.",
         (*_in("search", "simplified"), *_in("confirm", "simplified")),
         _given(1),
+        "346, 387 and 357 need refits",
     ),
     Rule(
         "restarts",
         "A set is fitted again from other starts and over windows, unless its residual is noise.",
         _in("stepwise", "StepwiseSearch.restarted"),
         _given(1),
+        "387 needs a refit",
     ),
     Rule(
         "exchanges",
         "A member is exchanged for another where that fits better.",
         _in("stepwise", "StepwiseSearch.exchanged"),
         _always(None),
+        "none in 14 sets",
     ),
     Rule(
         "floating",
         "A set is grown again without one of its members.",
         _in("search", "floated"),
         lambda stepwise, best, steps: (best, steps),
+        "none in 14 sets; beside aliases, which these do not have",
     ),
     Rule(
         "effects alone",
         "A set is searched for among effects alone, without declared values.",
         _in("search", "by_effects_alone"),
         lambda stepwise, best, steps, end=None: (best, steps),
+        "none in 14 sets; declared values of a voltage drive",
     ),
     Rule(
         "far starts",
         "Declared parameters that are weakly identified by the rows are started far off too.",
         _in("search", "_better_from_far_off"),
         _given(1),
+        "set 228 (a shaft damping of 2.30 for 0.62)",
     ),
     Rule(
         "declared model restarted",
         "The declared model is fitted again from the end of a set.",
         _in("search", "_declared_after"),
         lambda stepwise, trial: stepwise.declared if trial.candidates else trial,
+        "none in 14 sets",
     ),
     Rule(
         "windows where errors grow",
         "The search restarts in windows where a set multiplies small errors.",
         _in("search", "_in_windows"),
         _always(None),
+        "a cogging of 48 per turn (unexplained without)",
     ),
     Rule(
         "each through windows",
         "Effects without influence on the rows are fitted over growing windows.",
         _in("search", "each_through_windows"),
         _always([]),
+        "sets 071, 072 and 075 (missed without)",
     ),
     Rule(
         "lines of the outputs",
         "Frequencies of waves are looked for in the outputs too.",
         _in("search", "at_lines_of_outputs"),
         _always(()),
+        "set 014 (missed without)",
     ),
 )
 
 
 def table() -> str:
     """The rules as a table of the documentation."""
-    rows = ["| Rule | It asks | Where |", "|---|---|---|"]
+    rows = ["| Rule | It asks | Price | Where |", "|---|---|---|---|"]
     for rule in RULES:
         places = [p.removeprefix("ptp_symbolic.").replace(":", ".") for p in rule.where]
-        rows.append(f"| {rule.name} | {rule.asks} | {', '.join(f'`{p}`' for p in places)} |")
+        rows.append(
+            f"| {rule.name} | {rule.asks} | {rule.price} | {', '.join(f'`{p}`' for p in places)} |"
+        )
     return "\n".join(rows) + "\n"

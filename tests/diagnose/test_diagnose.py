@@ -212,7 +212,7 @@ def test_a_rule_has_the_price_that_a_hand_gives_it(
 
     rules = (
         Rule("word", "", (f"{verdict}:word_of",), lambda *given: "unexplained"),
-        Rule("validated", "", (f"{verdict}:is_borne_out",), lambda *given: True),
+        Rule("validated", "", (f"{verdict}:is_validated",), lambda *given: True),
         Rule("elsewhere", "", (f"{verdict}:refitted_alternatives",), from_elsewhere),
     )
     monkeypatch.setattr(price, "RULES", rules)

@@ -1,12 +1,9 @@
-"""What an effect must stand before it is named, besides its predictive gain.
+"""What an effect must pass before it is named, besides its predictive gain; and what remains of a
+set once the members that are not confirmed are dropped, or simplified.
 
-Whether the torque of an effect goes with the rate as its law says.
-
-What has the shape of an effect along the angle, but another law of the rate, has to be of one size
+A torque with the shape of an effect along the angle, but another law of the rate, is of one size
 where its axis is slow and of another where it is fast. Simulations hardly see that, for they
-integrate both; the rows of the equation space do.
-
-What remains of a set once the members that are not confirmed are dropped, or simplified.
+integrate both; the weak-form rows do.
 """
 
 from collections.abc import Callable, Mapping, Sequence

@@ -1,14 +1,10 @@
-"""Runs that nothing predicts to their end: cut into windows with starts of their own.
-
-Runs of which samples are missing: where it matters what the inputs did meanwhile, a new part.
-
-Some of many windows: enough for a median, spread over the logs.
-
-Fits over windows of growing length, whose ends are the initial values for whole runs.
+"""Runs that nothing predicts to their end, cut into windows with initial states of their own.
 
 The deviance of long runs is a staircase where friction breaks away: one start of motion a sample
 late moves all that follows. In a window with a single one it is smooth, and longer windows identify
-the parameters (multiple shooting: Bock, 1983).
+the parameters: the ends of fits over windows of growing length are the initial values for whole
+runs (multiple shooting: Bock, 1983). Runs are parted, too, where samples are missing and it matters
+what the inputs did meanwhile.
 """
 
 from collections.abc import Callable, Mapping, Sequence

@@ -1,9 +1,8 @@
-"""By how much a larger model predicts better: leave-one-block-out losses.
+"""By how much a larger model predicts better: leave-one-block-out losses, and validation runs.
 
 Every block of the training runs is left out in turn and predicted by the others (see
-`identify.blocks`); the losses of two models on the same blocks are compared in pairs.
-
-The validation runs: held to their own noise, and whether they bear out what was named.
+`identify.blocks`); the losses of two models on the same blocks are compared in pairs. The
+validation runs are compared with their own noise, with values in the joint confidence region.
 """
 
 from collections.abc import Mapping, Sequence

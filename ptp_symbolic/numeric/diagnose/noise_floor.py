@@ -4,10 +4,9 @@ It consists of rounding and noise of each signal, as the platform declares them 
 of the autocorrelation of that noise, where it is not declared, by the residual; and of the noise of
 the inputs, propagated to the outputs by the model itself.
 
-The samples that a search needs: simulations end a step at each, which is most of their cost.
-
 A search compares sets over runs with fewer samples, as long as the simulated signals at these stay
-the same within the noise; what was found is fitted to every sample at last.
+the same within the noise, for simulations end a step at each; what was found is fitted to every
+sample at last.
 """
 
 from collections.abc import Mapping, Sequence

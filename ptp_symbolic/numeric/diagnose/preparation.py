@@ -1,13 +1,10 @@
-"""What is settled before a diagnosis: candidates, windows, noise.
-
-Inputs that seem to act the other way round: a motor, or a sensor, wired with its sign inverted.
-
-How small a parameter or an effect these logs can show, predicted at the declared start values.
+"""What is settled before a diagnosis: candidates, windows, noise; and how small a parameter or an
+effect these logs can show, predicted at the declared start values.
 
 The prediction takes the declared model for right and the noise for white: model errors hide more.
 An effect is simulated at a small amount; its response, projected off what the free parameters and
-the starts of the runs can follow, must stand out of the noise, and hold the share of the squared
-error below which nothing is named.
+the initial states of the runs can follow, must stand out of the noise, and hold the share of the
+squared error below which nothing is named.
 """
 
 from collections.abc import Mapping, Sequence

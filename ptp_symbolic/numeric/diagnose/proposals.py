@@ -1,12 +1,8 @@
-"""What the equation space proposes: where to start the declared model, and which sets to try.
-
-The initial value of a candidate that delays an input.
+"""What the weak-form regression proposes: initial values of the declared model, and sets to try.
 
 A current that follows its voltage within a sample shows a delay in whole samples only: between them
 the rows do not change, and no difference quotient at a small delay points to a large one. Whole
 numbers are compared instead.
-
-The equation space of a task, and the declared model fitted to its rows.
 """
 
 import itertools

@@ -1,14 +1,9 @@
 """Refits of a set by simulation: over short windows first, then whole runs, at last to the end.
 
-Initial values of refits by simulation: those of the rows or of responses in the outputs, and others
-near them.
-
-The declared model fitted to the training runs: to whole ones, or over windows first.
-
-The declared model and the sets that contain it: each is restarted from the end of the other.
-
-A set fits no worse than the declared model, which it contains, and its gain counts over the best
-fit of that.
+Their initial values are those of the weak-form rows, of responses in the outputs, and others near
+them. The declared model is one of the sets: each set is restarted from the end of that and it from
+theirs, for a set fits no worse than the declared model, which it contains, and its gain counts over
+the best fit of that.
 """
 
 import math

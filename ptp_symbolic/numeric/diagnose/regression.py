@@ -1,11 +1,8 @@
-"""The rows of the equation space as one linear regression on the declared parameters and the
-signatures of all candidates, with Huber's weights.
+"""Which sets of candidates explain the weak-form rows: all subsets, cross-validated.
 
-Which sets of candidates explain the rows of the equation space: all subsets, cross-validated.
-
-Everything is linear here: the declared parameters and the signatures are columns of one regression,
-so that a subset costs the solution of a small system per fold, and aliased effects compete at once
-(all subsets: Furnival and Wilson, 1974).
+Everything is linear here: the declared parameters and the signatures of all candidates are columns
+of one regression with Huber's weights, so that a subset costs the solution of a small system per
+fold, and aliased effects compete at once (all subsets: Furnival and Wilson, 1974).
 """
 
 import itertools

@@ -1,12 +1,10 @@
-"""The residual torque of a model along the measured motion: observations, no names.
+"""The residual of a model along the measured motion and on validation runs: observations, no names.
 
 The residual torque of every axis is averaged in bins of the angle, of the rate, of the input and of
 the time since the joint turned back, and searched for lines in time and in angle. The share of its
-variance that a side accounts for says where to look for what is missing.
-
-Whiteness and independence tests of the residual on validation runs, for every signal.
-
-A change of one log at an unknown time: a step, or another way to follow motion or inputs.
+variance that a side accounts for says where to look for what is missing. Residuals of every signal
+are tested for whiteness and for independence of the inputs, and each log for a change at an unknown
+time.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

@@ -2,9 +2,11 @@
 
 Breakaways, gaps and delays do not show in the torque along the motion, or have no derivative where
 they vanish: their response to a finite amount, the free parameters following, predicts what a refit
-could gain, and where it should start.
+could gain, and where it should start. Responses, and linear predictions from a Jacobian, are
+projected off what other parameters follow.
 
-Linear algebra at a fit: what an effect changes in the residuals, projected off what others follow.
+Where a machine rests, or lies in a gap, most of the time, there are few rows, and no line stands
+out in them. It does in the outputs: waves of all frequencies are simulated in turn.
 """
 
 from collections.abc import Callable, Collection, Mapping, Sequence

@@ -1,15 +1,9 @@
-"""The search: sets that the equation space proposes, refitted by simulation; the best of them is
-completed, pruned and grown until every candidate in it is needed and none outside would add to it.
+"""The search: sets that the weak-form regression proposes, refitted by simulation; the best of them
+is completed, pruned and grown until every candidate in it is needed and none outside would add to
+it.
 
-The frequency of a wave by what it changes in the simulated outputs.
-
-Where a machine rests, or lies in a gap, most of the time, few rows are left, and no line stands out
-in them. The outputs still know it: waves of all frequencies are simulated in turn.
-
-Sets that grow and shrink by one candidate at a time: stepwise selection, of all candidates or of
-effects alone.
-
-Effects that act at breakaway, fitted through windows of growing length.
+It is a stepwise selection by one candidate at a time, of all candidates or of effects alone.
+Effects that act at breakaway are fitted through windows of growing length.
 """
 
 from collections.abc import Callable, Mapping, Sequence

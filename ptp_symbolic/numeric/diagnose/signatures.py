@@ -1,4 +1,4 @@
-"""What every candidate would change in the rows of the equation space.
+"""What every candidate would change in the weak-form rows.
 
 A candidate's signature is a set of columns: the rows with a finite amount of each parameter that
 switches it on, minus the rows without, at every set of values of the parameters that shape it. Its

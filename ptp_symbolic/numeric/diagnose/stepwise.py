@@ -1,15 +1,9 @@
-"""The moves of a search: sets are completed, pruned, grown, exchanged by refits.
+"""The moves of a stepwise search: sets are completed, pruned, grown, exchanged and simplified by
+refits; what they have found, and what was tried.
 
-What a search has tried: a hundred trials, whose Jacobians are large, and where sets end.
-
-Every candidate by itself over a few short windows: what the motion alone does not show.
-
-Windows forget: neither a rest nor a bounce in a gap that ends a sample late misleads a fit there,
-so that a few iterations show the worth of a candidate, and at which values.
-
-Every candidate of a set in the simplest of its forms that will do.
-
-What a search finds: the chosen set, what its members gain, and whether that is enough.
+Candidates are compared over a few short windows first. Windows forget: neither a rest nor a bounce
+in a gap that ends a sample late misleads a fit there, so that a few iterations show the worth of a
+candidate, and at which values.
 """
 
 import math

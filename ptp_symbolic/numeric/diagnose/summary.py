@@ -1,14 +1,9 @@
-"""A diagnosis as plain data: headline, errors, ranking, parameters.
+"""A diagnosis as plain data: headline, errors, ranking, parameters, curves.
 
-How large a named effect is, in a few words for a headline.
-
-The error of a fit, in one definition for every place that shows one.
-
-Root mean square over all samples of all runs (or windows) of a part, nothing left out: of the angle
-signals in rad (the position of a linear joint in m) and in counts of each signal's own encoder, and
-of every signal in its own unit.
-
-Measured and simulated signals of a diagnosis, run by run.
+The error of a fit has one definition for every place that shows one: root mean square over all
+samples of all runs (or windows) of a part, nothing left out: of the angle signals in rad (the
+position of a linear joint in m) and in counts of each signal's own encoder, and of every signal in
+its own unit.
 """
 
 import re

@@ -1,7 +1,5 @@
-"""A trial: the declared model with a set of candidates, fitted to the training runs by
-simulation.
-
-Fits side by side, in threads of their own that share out their simulations.
+"""A trial: the declared model with a set of candidates, fitted to the training runs by simulation;
+fits run side by side, in threads of their own that share out their simulations.
 """
 
 import os

@@ -1,7 +1,5 @@
-"""The verdict: which effects are confirmed, which are indistinguishable, and whether the residual
-is noise.
-
-Why a verdict came out: the rules that decided it, each with the number it was held to.
+"""The verdict: which effects are confirmed, which are indistinguishable, whether the residual is
+noise; and the rules that decided it, each with the number that it was compared with.
 """
 
 from collections.abc import Mapping, Sequence

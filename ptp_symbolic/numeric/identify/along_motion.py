@@ -1,12 +1,9 @@
 """Inverse dynamics along a measured motion, sample by sample, without simulating it.
 
 The joint angles are measured; what is behind a gap follows them: the torque that a joint lacks is
-what its shaft transmits, its sign tells the face that is touched, and the twist follows from the
+what its shaft transmits, its sign gives the face that is touched, and the twist follows from the
 shaft's own law. Winding currents, temperatures and other states of effects are integrated along.
-
-Joint angles behind sensors that err: where they show what was measured.
-
-Where angles, rates, contacts and further states lie in the arrays of a model.
+Joint angles behind sensors that err are those at which the sensors show what was measured.
 """
 
 from functools import lru_cache

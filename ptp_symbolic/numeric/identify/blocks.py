@@ -4,12 +4,10 @@ Leave-one-block-out without a refit: near the optimum the residual is linear in 
 the normal equations without a block give its prediction and the shift of the parameters at once
 (PRESS: Allen, 1974; the jackknife over clusters: Bell and McCaffrey, 2002).
 
-Robust losses: Huber's, and Cauchy's over blocks of a residual, which are windows that stand for
-themselves, or blocks of a run.
-
-A window that began on the wrong side of a rest says nothing about the parameters, nor does the
-stretch of a run in which friction lets go a sample late: a mean square over all would pay for it
-with parameters that are wrong everywhere (Black and Anandan, 1996).
+Robust losses: Huber's, and Cauchy's over blocks, which are whole windows or parts of a run. A
+window that began on the wrong side of a rest holds no information about the parameters, nor does
+the stretch of a run in which friction breaks away a sample late: a mean square over all would
+compensate it by parameters that are wrong everywhere (Black and Anandan, 1996).
 """
 
 from collections.abc import Sequence

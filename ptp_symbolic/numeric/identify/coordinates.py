@@ -1,6 +1,7 @@
-"""The coordinates in which a fit searches: logarithms where zero is out of bounds, or scaled.
+"""The coordinates in which a fit searches, and its inequality constraints.
 
-Inequality constraints of a search: no breakaway below sliding friction, for one.
+Coordinates are logarithms where zero is out of bounds, else scaled values. A constraint is a
+relation that the machine needs, such as a breakaway that is not below sliding friction.
 """
 
 from collections.abc import Callable, Mapping, Sequence

@@ -1,7 +1,8 @@
-"""Fit parameters to the rows of the equation space: bounded, robust, nearly linear least squares.
+"""Fit parameters to the weak-form rows: bounded, robust, nearly linear least squares.
 
-The start of every simulation: inertia, friction and the strength of most effects are found from far
-away, for their rows are linear in them (inverse dynamic identification: Gautier and Khalil, 1990).
+The initial values of every simulation: inertia, friction and the strength of most effects are found
+from far away, for their rows are linear in them (inverse dynamic identification: Gautier and
+Khalil, 1990).
 """
 
 from collections.abc import Mapping, Sequence

@@ -1,9 +1,7 @@
-"""The rows of a run in equation space: how wide their windows are, and which of them count.
+"""The weak-form rows of a run: how wide their windows are, and which of them count.
 
-The measured motion of a run: angles without the errors of sensors, smoothed and averaged; and
-further states along it.
-
-How a joint moved at the rows of the equation space: angle, rate, time since it turned back.
+Angles are freed of the errors of sensors, smoothed and averaged; further states are integrated
+along the measured motion.
 """
 
 from collections.abc import Sequence

@@ -4,13 +4,7 @@ One row per chosen sample and equation: the torque in N m that an axis lacks, av
 function (see `weak_form`), or the measured minus the integrated value of a further state. The rows
 are nearly linear in the parameters, so that far starts and many candidates cost next to nothing.
 Rows whose window holds a joint at rest or a change of the touched face are left out: there friction
-and contact are set-valued.
-
-What is costly to make and may be asked for again.
-
-The equation space of a set of runs: window, rates of rest, and the rows that count.
-
-Structural dependence: which parameters and states act on what, probed at random states.
+and contact are set-valued. Which parameters and states act on what is probed at random states.
 """
 
 from collections import OrderedDict

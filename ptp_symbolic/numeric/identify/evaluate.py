@@ -1,10 +1,9 @@
 """Residuals of a run and their Jacobians by parameters and by the unknown initial state.
 
-What no sensor shows and soon forgets, where a window begins: the winding current of a motor.
-
-It follows the motion and the input before the window as if it had settled there, the reduced model
-of fast states (Kokotovic, Khalil and O'Reilly, 1986, 1.2): from none, a current would come up
-within the window, and a joint that slides would start a little behind.
+Where a window begins, a fast state that no sensor shows, such as the current of a winding, follows
+the motion and the input before as if it had settled there: the reduced model of fast states
+(Kokotovic, Khalil and O'Reilly, 1986, 1.2). From zero, a current would come up within the window,
+and a joint that slides would start a little behind.
 """
 
 from collections.abc import Sequence

@@ -2,12 +2,12 @@
 
 A diagnosis is a deterministic function of few expensive evaluations: fits, and numbers that are
 computed from their residuals and Jacobians. Each of them is recorded under a digest of its
-arguments. Where all of them are known, the same diagnosis simulates nothing.
+arguments. Where all of them are known, the same diagnosis simulates nothing. Fits are recorded
+without residuals and Jacobians, which are hundreds of times as large: these are simulated again, at
+the values of the fit, where they are needed after all.
 
-Fits are recorded without residuals and Jacobians, which are hundreds of times as large: these are
-simulated again, at the values of the fit, if they are asked for after all.
-
-How much of a search is simulated: a limit that the speed of a machine does not move.
+The samples that are simulated are counted: a search ends at a number of them that the speed of a
+machine does not change.
 """
 
 import hashlib

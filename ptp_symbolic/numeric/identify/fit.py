@@ -1,18 +1,14 @@
-"""Fit the free parameters of a model to several runs at once.
+"""Fit the free parameters of a model to several runs at once, and the initial states of the runs.
 
-Where a gear stands in its gap when a run begins: no sensor shows it, the rest of the run does.
+The place of a gear in its gap at the start of a run is measured by no sensor. The gear stays ahead
+of where it was thought to be by the same angle ever after, and the joint follows it: the median of
+the residual of its angle falls with the place, almost in a straight line. The sum of squares is
+rough in it, for bounces and rests change with the place, which is therefore the root of the median
+(Brent, 1973), not a least square.
 
-The gear stays ahead of where it was thought to be by the same angle ever after, and the joint
-follows it: the residual of the joint's angle moves as a whole, and its median falls with the place,
-almost in a straight line. The sum of squares along the same place is rough, for bounces and rests
-change with it. The place is therefore the root of the median (Brent, 1973), not a least square.
-
-The start unknowns of runs at given parameters: there no run depends on another, but for windows.
-
-What no sensor shows at the start of a window, where a gear stands in its gap and how fast it turns,
-the window before it tells: its simulation ends there. Guessed from the angles around, 18 of 129
-windows of 1 s on three drives that rattle, at their true parameters, ended on the wrong side of the
-gap (five of them from where the one before ended), and parameters pay for that.
+The initial state of a window is the end of the simulated window before it. Guessed from the angles
+around, 18 of 129 windows of 1 s on three drives that rattle, at their true parameters, ended on the
+wrong side of the gap (five of them from where the one before ended), which parameters compensate.
 """
 
 from collections.abc import Callable, Mapping, Sequence

@@ -2,25 +2,17 @@
 
 The residuals of a simulation error fit are never white: the noise of an input, propagated to an
 angle, may last for a whole run. The covariance is that of a jackknife over a few long blocks of
-time, the unknown starts projected out. Intervals never get narrower than those of white noise, as
-large as declared or as the residual, or of noise with the autocorrelation of the residual, beside
-the propagated noise of the inputs.
+time, the unknown initial states projected out. Intervals never get narrower than those of white
+noise, as large as declared or as the residual, or of noise with the autocorrelation of the
+residual, beside the propagated noise of the inputs: of what few samples show, as those about one
+breakaway, no block of time can be left out to judge it.
 
-Errors of a fit under stationary noise.
+Blocks of time within logs show how well one value suits them all, not how far the machine of
+another day is from it, whose friction is that of another temperature: where logs differ by more
+than blocks within each make likely, every log counts as one observation.
 
-Of what few samples show, as those about one breakaway, no block of time can be left out to judge
-it. The covariance of the residual over all samples says how far such a sum scatters.
-
-Values that differ from log to log.
-
-Blocks of time within logs tell how well one value suits them all. They do not tell how far the
-machine of another day is from it, whose friction is that of another temperature: where logs differ
-by more than blocks within each make likely, every log counts as one observation.
-
-The joint confidence region of the values of a fit, and the values in it that suit other runs.
-
-Finite differences in the Jacobian of a finished fit, where the derivatives at the point miss what
-these see.
+Finite differences replace the derivatives of a finished fit that miss what these see: friction that
+holds, or breaks away a sample later, makes the residual a staircase of a parameter.
 """
 
 from collections.abc import Collection, Mapping, Sequence

@@ -1,18 +1,13 @@
 """Levenberg-Marquardt over several runs, the unknown initial states eliminated run by run.
 
-Shared parameters phi meet all runs, the start unknowns z of a run meet only that run: the normal
-equations are bordered block diagonal and solved by a Schur complement (Golub and Pereyra, 1973,
-call the elimination variable projection).
+Shared parameters phi meet all runs, the unknowns z of the initial state of a run meet only that
+run: the normal equations are bordered block diagonal and solved by a Schur complement (Golub and
+Pereyra, 1973, call the elimination variable projection), within the box that one step may reach.
 
-The solution of normal equations within the box that one step may reach.
-
-Finite-difference Jacobians, where the derivatives at a point mislead.
-
-Zero-order-hold inputs let a friction break away at one sample or the next: the residual is then a
-staircase of the parameter, and its derivative sees the treads alone. Bounces in a gap that appear
-and vanish do the same. A difference over a finite step sees both.
-
-The runs of a fit as functions of its search coordinates and of their start unknowns.
+Finite differences replace derivatives that mislead. Zero-order-hold inputs let a friction break
+away at one sample or the next: the residual is then a staircase of the parameter, and its
+derivative is that of a tread. Bounces in a gap that appear and vanish do the same. A difference
+over a finite step sees both.
 """
 
 from collections.abc import Callable, Mapping, Sequence

@@ -1,14 +1,8 @@
-"""A run prepared for fitting: inputs as tables, measured signals with weights, unknown starts.
+"""A run prepared for fitting: inputs as tables, measured signals with weights, unknown initial
+states.
 
-Rates that are measured without the angle: possible where nothing depends on the angle.
-
-The rate of a joint at the first sample of a run or window, from the angles around it.
-
-A run with other inputs: noisy, silent, averaged.
-
-Runs and windows together: which are of one log, and how long each is.
-
-Averages over parts of samples: of zero-order-hold inputs, and of values around a grid.
+The rate of a joint at the first sample of a run or window is estimated from the angles around it.
+Runs have variants with other inputs or fewer samples, and inputs averages over parts of samples.
 """
 
 import itertools

@@ -1,6 +1,5 @@
-"""Logs made into runs: matched to the model, parted at gaps, with the noise of every signal.
-
-What a log holds, before any model is fitted: its clock, its signals, how the machine moved.
+"""Logs made into runs: matched to the model, parted at gaps, with the noise of every signal; and
+what a log holds before any model is fitted: its clock, its signals, how the machine moved.
 """
 
 from collections.abc import Mapping, Sequence

@@ -2,12 +2,8 @@
 
 A machine that forgets (a geared drive, damped by its back-EMF) is judged over whole runs. One that
 integrates its input noise, or whose errors grow (a torque-driven axis, a payload above the tilt
-axis), would be judged by that noise; it is cut into windows with starts of their own.
-
-Windows of a log that follow one another: each begins where the simulated one before it ended.
-
-Runs replayed with the noise of their inputs once more: how it propagates to the outputs, and what a
-fit follows of it.
+axis), would be judged by that noise; it is cut into windows with initial states of their own. The
+same replays give the propagated input noise of a fit.
 """
 
 import itertools
