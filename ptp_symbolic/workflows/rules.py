@@ -101,7 +101,7 @@ RULES = (
         "A set, or a member of one, reduces the sum of squares by a material share (10 %).",
         _in("preparation", "MATERIAL", package=WORKFLOWS),
         0.0,
-        "13 of 14 sets search on; stated level",
+        "12 of 14 sets need refits; stated level",
     ),
     Rule(
         "significant",
