@@ -110,7 +110,7 @@ def test_a_declared_value_is_wrong_by_so_many_percent(
     trial = _trial(candidate, value=DECLARED * (1.0 + share))
     text = summary.headline(_verdict(EXPLAINED, trial), _errors(), {})
     assert text.startswith(f"Declared value of J_y_tilt is {words} (inertia of the tilt body")
-    assert ("statistically clear but small" in text) == small
+    assert ("statistically significant but small" in text) == small
 
 
 @pytest.mark.parametrize(("counts", "shown"), [(0.5, "0.500 counts"), (None, "0.000543 rad")])

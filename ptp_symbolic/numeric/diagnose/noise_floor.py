@@ -136,7 +136,7 @@ def bound_of(squares: FloatArray, chance: float) -> float:
     """The bound that a mean square exceeds with a `chance`, from some [n] that are like it; 99 %
     bounds from eight replays, which give the scale only roughly, were exceeded by 2 to 3 %.
 
-    It is a sum of squares of one normal number or more: the variance of its logarithm tells how
+    It is a sum of squares of one normal number or more: the variance of its logarithm gives how
     many, the mean of that its scale (Bartlett and Kendall, 1946), and both are known from n alone.
     A replay that sticks elsewhere counts little in a logarithm.
     """

@@ -232,7 +232,7 @@ def extended(
             break
         stepwise.tried.others.append(best)
         full = stepwise.completed(grown)
-        if gain(grown, best).share >= MOST:  # one that gains less has been begun anew before
+        if gain(grown, best).share >= MOST:  # one that gains less has been restarted before
             full = stepwise.restarted(full)
         pruned, fewer = stepwise.pruned(full)
         same = pruned.keys == best.keys

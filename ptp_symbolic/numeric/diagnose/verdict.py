@@ -80,7 +80,7 @@ class Verdict:
     need, or one to the torques along the motion. `compared` is its set as the search compared it
     with others. By key, `gains` is what each of its effects gains, and `confusable` are the
     alternatives of each; `alternatives` are sets with them. `closest` is the best set where nothing
-    is confirmed, `refused` tells why candidates that gained were not named. `floor` is that of
+    is confirmed, `refused` says why candidates that gained were not named. `floor` is that of
     `final`; `before` and `after` are the validation runs by the declared and by the final model.
     """
 
@@ -311,9 +311,9 @@ ALIKE = "alternatives that predict as well in its place"
 
 
 def reasons(found: Search, verdict: Verdict, compared: int) -> list[dict[str, Any]]:
-    """A row for every rule and what it was asked `about` (the key of an effect; None: the whole
-    model): the `value`, whether it has to be `at_least` or `at_most` the `limit`, and whether it
-    `holds`. `compared` is the number of structures that were fitted.
+    """A row for every rule and what it is `about` (the key of an effect; None: the whole model):
+    the `value`, whether it has to be `at_least` or `at_most` the `limit`, and whether it `holds`.
+    `compared` is the number of structures that were fitted.
     """
     rows = []
     for candidate in verdict.final.candidates:

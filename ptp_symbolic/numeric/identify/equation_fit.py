@@ -72,9 +72,9 @@ def fit_equations(
     Gauss-Newton steps within bounds, begun at `values` (all parameters of the model).
 
     A prior of one start value (or one scale) around the start of every parameter keeps those in
-    place that the rows do not see; thousands of rows, which overlap, outweigh it where they do.
-    Where a step leads to values at which there are no finite rows, it is not taken. Raises
-    InputError for `values` out of bounds.
+    place that the rows do not see; thousands of rows, which overlap, outweigh it where they do. A
+    step to values at which there are no finite rows is not taken. Raises InputError for `values`
+    out of bounds.
     """
     equation, run, time = space.labels()
     blocks = len(np.unique(np.column_stack([equation, blocks_in_time(run, time)]), axis=0))
@@ -122,8 +122,8 @@ def linearised(
     own_torque: bool = False,
 ) -> Linearised:
     """The rows [n] and their difference quotients [n, nf] with `free` at the values `here`, the
-    quotients with the model's `own_torque` if asked for (see `EquationSpace.own_torque`). Raises
-    InputError for `values` out of bounds.
+    quotients with the model's `own_torque` where it is true (see `EquationSpace.own_torque`).
+    Raises InputError for `values` out of bounds.
     """
     model = space.model
     names = list(model.parameter_names)

@@ -48,7 +48,7 @@ class RunRows:
     of the grid that have a row, `kept` [c, equations] the rows that count; `face` [g, na] is the
     face that every gear output touches.
 
-    `part` [g] tells what a row needs of a sample of the grid: 0 nothing, 1 its torque, 2 the
+    `part` [g] is what a row needs of a sample of the grid: 0 nothing, 1 its torque, 2 the
     derivatives of the torque too. The windows of the rows: `on_grid` and `curved` (of second
     derivatives) over the grid, `on_samples` over all samples.
     """

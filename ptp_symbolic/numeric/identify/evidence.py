@@ -79,7 +79,7 @@ def uncounted() -> Iterator[None]:
 
 
 class Threads(ThreadPoolExecutor):
-    """Threads in which each piece of work has the context of who asked for it."""
+    """Threads in which each piece of work has the context of its caller."""
 
     def submit(self, fn: Callable[..., Result], /, *args: Any, **kwargs: Any) -> "Future[Result]":
         """Begin a piece of work."""
@@ -124,8 +124,8 @@ Item = TypeVar("Item")
 
 
 class NotStoredError(Exception):
-    """A simulation was asked for where only stored evidence may be used; `missing` are the keys
-    of the evaluations that asked for it, so many as were asked for side by side.
+    """A simulation was needed where only stored evidence may be used; `missing` are the keys of the
+    evaluations that needed it, all that were requested side by side.
     """
 
     def __init__(self, missing: Set[str] = frozenset()) -> None:
@@ -206,7 +206,7 @@ def refuse_unstored() -> None:
 
 class InTurn(Executor):
     """One piece of work after the other, for stored evidence: where some of it is missing, all that
-    was asked for side by side is looked up before NotStoredError says which.
+    was requested side by side is looked up before NotStoredError says which.
     """
 
     def submit(self, fn: Callable[..., Result], /, *args: Any, **kwargs: Any) -> "Future[Result]":
@@ -303,7 +303,7 @@ def is_recording() -> bool:
 
 
 class Deferred(Sequence[Item], Generic[Item]):
-    """Items that are known by a `key`, and made where they are first asked for; that counts as no
+    """Items that are known by a `key`, and made where they are first needed; that counts as no
     work. `squares` are what most ask of them, so that they need not be made. Where nothing has to
     `make` them, they are `items`.
     """

@@ -289,7 +289,7 @@ def _elsewhere(
 
 def linked(runs: Sequence[Run]) -> list[list[int]]:
     """Indices of the runs: windows that begin with the last sample of the one before, and have a
-    gap of which no sensor tells the place, together; all others alone.
+    gap in which no sensor shows the place, together; all others alone.
     """
     series: list[list[int]] = []
     for index, run in enumerate(runs):

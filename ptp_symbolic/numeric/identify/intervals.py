@@ -87,7 +87,7 @@ def reach_between_logs(logs: Sequence[tuple[FloatArray, FloatArray]], signals: i
     and its derivatives [k * signals, nf] by the parameters, at their common optimum.
 
     Zero where logs do not differ significantly (see `chance_of_scatter`), and for all parameters
-    where there are fewer than three, or where one of them alone tells some combination of
+    where there are fewer than three, or where one of them alone identifies some combination of
     parameters: without it, the errors of all others would show.
     """
     nothing = np.zeros(logs[0][1].shape[1])
@@ -286,9 +286,9 @@ def chance_of(
 
     One is Hotelling's T^2 (1931) with the fewest degrees: coordinates that trade for each other are
     significant together. The other is Student's t of the most significant coordinate with its own
-    degrees, times k: where one block tells one of them alone, the others may be beyond doubt.
+    degrees, times k: where one block alone identifies one of them, the others may be beyond doubt.
     Coordinates that are not `seen` [k] alone, only in combination, have no t. One without any error
-    is told by nothing and left out; 1 where all are.
+    is not identified and left out; 1 where all are.
     """
     error = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     told = error > NOTHING * np.abs(away)
@@ -440,15 +440,15 @@ def project_out(jacobian: FloatArray, nuisance: FloatArray) -> FloatArray:
 def with_finite_differences(
     fit: Fit, executor: Executor | None = None, reach: FloatArray | None = None
 ) -> Fit:
-    """`fit` with finite differences in its Jacobians where the tangents at the optimum are blind to
-    what these see: friction that holds, or lets go a sample later, makes the residual a staircase
-    of a parameter.
+    """`fit` with finite differences in its Jacobians where the tangents at the optimum miss what
+    these see: friction that holds, or breaks away a sample later, makes the residual a staircase of
+    a parameter.
 
     The differences go over a usual step, or as far as the parameters may be off where that `reach`
-    [nf] in search coordinates is given. Where they stand in and tell a parameter far better than
-    their step, that is too long: one jump somewhere in it says that the parameter is no further
-    off, but not where it is. So it is shortened until the interval is about as long; where it never
-    is, the tangents stay.
+    [nf] in search coordinates is given. Where they replace tangents and give a parameter far better
+    than their step, that is too long: one jump somewhere in it says that the parameter is no
+    further off, but not where it is. So it is shortened until the interval is about as long; where
+    it never is, the tangents stay.
     """
     if not fit.free or fit.failed:
         return fit
@@ -499,8 +499,8 @@ def _with_columns(fit: Fit, columns: Sequence[FloatArray], wanted: BoolArray) ->
 
 
 def _is_blind(at_point: Evaluation, finite: Evaluation, steps: FloatArray) -> BoolArray:
-    """Which tangents [nf] of a run are blind to what differences over `steps` [nf] see, beyond what
-    errors of the simulation may change.
+    """Which tangents [nf] of a run miss what differences over `steps` [nf] see, beyond what errors
+    of the simulation may change.
     """
     seen, size = (np.linalg.norm(e.by_parameter, axis=0) for e in (at_point, finite))
     by_errors = ROUGH * np.sqrt(len(at_point.residual)) / steps

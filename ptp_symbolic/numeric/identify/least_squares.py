@@ -162,7 +162,7 @@ def _replaced(
     return [replace(e, by_parameter=j) for e, j in zip(evaluations, jacobians, strict=True)]
 
 
-BIGGEST = np.reciprocal(np.finfo(float).eps)  # beyond, a simulation has told nothing
+BIGGEST = np.reciprocal(np.finfo(float).eps)  # beyond, a simulation has no information
 
 
 class Evaluate(Protocol):
@@ -176,7 +176,7 @@ class Evaluate(Protocol):
         only: Sequence[int] | None = None,
     ) -> list[Evaluation]:
         """Evaluations of the runs `only` (all unless given) at phi [nf] from their starts z, each
-        [nz], with Jacobians where `tangents` are asked for.
+        [nz], with Jacobians where `tangents` is true.
         """
         ...
 
@@ -187,8 +187,8 @@ class Problem:
     [nz].
 
     `refine`, where given, corrects the Jacobians from which steps are taken: those that come out
-    are always the ones at the point, which intervals need. `allow` projects steps that lead where
-    no machine is possible. `blocks` are, run by run, the blocks of rows that the robust loss weighs
+    are always the ones at the point, which intervals need. `allow` projects steps to where no
+    machine is possible. `blocks` are, run by run, the blocks of rows that the robust loss weighs
     (see `identify.robust_loss`): whole runs, unless given; `robust_below` is that of
     `robust_tuning`. `logarithmic` marks logarithms of values, in which steps are to be straight.
     """

@@ -91,9 +91,9 @@ def _spread(freedom: float, count: int) -> tuple[float, float]:
 
 
 def _poles() -> tuple[float, ...]:
-    """Zero, and from the smallest correlation that a SEGMENT tells from none to a time constant of
-    half a SEGMENT, in steps of at most half the error that a SEGMENT leaves: 1 / sqrt(SEGMENT) in
-    the inverse hyperbolic tangent of a correlation, wherever it is (Fisher, 1915).
+    """Zero, and from the smallest correlation that is significant in a SEGMENT to a time constant
+    of half a SEGMENT, in steps of at most half the error that a SEGMENT leaves: 1 / sqrt(SEGMENT)
+    in the inverse hyperbolic tangent of a correlation, wherever it is (Fisher, 1915).
     """
     error = 1.0 / np.sqrt(SEGMENT)
     first, last = DEVIATIONS * error, np.arctanh(1.0 - 2.0 / SEGMENT)

@@ -83,9 +83,9 @@ def first_rate(around: Around, column: int, sigma: float, count: float) -> tuple
     is `sigma`, rounding of a `count` (nan: none) included.
 
     A local parabola gives it, over the longest span up to a tenth of a second that agrees with all
-    shorter ones: where friction lets go, a longer one bends the wrong way (intersection of
+    shorter ones: where friction breaks away, a longer one bends the wrong way (intersection of
     confidence intervals: Goldenshluger and Nemirovski, 1997). Its error is that of the noise, and
-    what a cubic tells otherwise.
+    the difference to a cubic.
     """
     time = around.time - around.time[around.first]
     low, high, found = -np.inf, np.inf, (0.0, np.inf)

@@ -130,7 +130,7 @@ def estimable(
     fit: Fit, declared_noise: Sequence[float | None], executor: Executor | None = None
 ) -> Fit:
     """A finished fit with all that its intervals need: what the noise of the inputs changes, and
-    derivatives that are not blind.
+    finite differences where derivatives miss what these see.
     """
     return with_finite_differences(with_input_noise(fit, declared_noise, executor), executor)
 
@@ -285,8 +285,8 @@ def _errors_grow(
 
 def _rattles(model: Model, run: Run, p: FloatArray) -> bool:
     """True when a small error of the place of a gear in its gap moves the joint ten (1 / MATERIAL)
-    times as far within the run, by the geometric mean over the places in the gap: from a single
-    one it scatters tenfold, for some by chance lead to a rest on a face.
+    times as far within the run, by the geometric mean over the places in the gap: from a single one
+    it scatters tenfold, for some end by chance at a rest on a face.
     """
     none, z = np.zeros(0, dtype=np.int64), run.guess
     for index, unknown in enumerate(run.unknowns):
