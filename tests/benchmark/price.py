@@ -49,7 +49,7 @@ class Answer:
 
     def __str__(self) -> str:
         if self.missing:
-            return f"needs {self.missing} evaluations that were not made"
+            return f"needs {self.missing} refits that were not made"
         names = [" or ".join([key, *alike]) for key, alike in self.named]
         return f"{self.verdict} ({', '.join(names) or 'no name'})"
 
@@ -195,12 +195,14 @@ def _counted(changes: Sequence[Change]) -> str:
     """How many verdicts change, by kind, and in which folders; what is missing at first."""
     folders: dict[str, list[str]] = {}
     for change in changes:
-        folders.setdefault(change.kind, []).append(change.folder.name.partition("-")[0])
-    unchanged = len(folders.pop("none", ()))
-    needs = folders.pop("needs", [])
+        name = change.folder.name
+        number = re.match(r"\d+(?=-)", name)
+        folders.setdefault(change.kind, []).append(number[0] if number else name)
+    unchanged, needs = len(folders.pop("none", ())), folders.pop("needs", [])
     said = [f"{len(names)} {kind} ({', '.join(names)})" for kind, names in sorted(folders.items())]
-    said.append(f"{unchanged} unchanged")
+    if unchanged:
+        said.append(f"{unchanged} unchanged")
     if needs:
         missing = sum(change.after.missing for change in changes)
-        said.append(f"{len(needs)} need {missing} evaluations or more ({', '.join(needs)})")
+        said.append(f"{len(needs)} need refits, {missing} at first ({', '.join(needs)})")
     return ", ".join(said)

@@ -219,10 +219,11 @@ def test_a_rule_has_the_price_that_a_hand_gives_it(
     said = list(price.prices([kept], "", simulate=False))
     assert said == [
         "sample: right: explained (base_tilt)",
-        "word: 1 right -> missed",
-        "    sample: explained (base_tilt) -> unexplained (base_tilt)",
-        "validated: 1 none",
-        "elsewhere: 1 need evaluations that were not made, 1 at first",
+        "    without word: unexplained (base_tilt)",
+        "    without elsewhere: needs 1 refits that were not made",
+        "word: 1 right -> missed (sample)",
+        "validated: 1 unchanged",
+        "elsewhere: 1 need refits, 1 at first (sample)",
     ]
 
 

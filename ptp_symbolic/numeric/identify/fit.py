@@ -413,20 +413,17 @@ def fit_parameters(
     Raises InputError for `fixed` values out of bounds.
     """
     effort = effort or Effort()
-
-    def ended() -> _End:
-        return _ended(model, runs, free, fixed, z, effort, executor, misleading, earlier)
-
+    given = _Given(model, tuple(runs), tuple(free), fixed, z, effort, executor, misleading, earlier)
     if not is_recording():
-        return ended().fit
-    given = model, tuple(runs), tuple(free), fixed, z, effort, misleading
-    key = key_of("fit", *given, None if earlier is None else earlier.evaluations)
-    found = stored(key, ended, _End.light)
+        return given.ended().fit
+    before = None if earlier is None else earlier.evaluations
+    key = key_of("fit", model, given.runs, given.free, fixed, z, effort, misleading, before)
+    found = stored(key, given.ended, _End.light)
     kept, make = found.light, None
     if found.made is not None:
         fit = found.made.fit
     else:
-        fit, make = _of_light(kept, model, runs, free, fixed, effort, executor, earlier)
+        fit, make = given.of_light(kept)
     evaluations = Deferred(key, len(runs), make, kept["squares"], fit.evaluations)
     return replace(fit, evaluations=evaluations)
 
@@ -455,97 +452,70 @@ class _End:
         }
 
 
-def _of_light(
-    kept: Mapping[str, Any],
-    model: Model,
-    runs: Sequence[Run],
-    free: Sequence[FreeParameter],
-    fixed: Mapping[str, float],
-    effort: Effort,
-    executor: Executor | None,
-    earlier: Fit | None,
-) -> tuple[Fit, Callable[[], Sequence[Evaluation]]]:
-    """The fit of which `_End.light` was recorded, and what makes its evaluations."""
-    values = {**fixed, **all_values(free, kept["phi"])} if free else dict(fixed)
+@dataclass(frozen=True, eq=False)
+class _Given:
+    """The arguments of `fit_parameters`."""
 
-    def evaluations() -> Sequence[Evaluation]:
-        if kept["unmoved"] and earlier is not None:
-            return _by_coordinates(earlier, free)
-        base = fixed if free else values
-        simulations = simulations_of(model, runs, free, base, effort, executor)
-        return simulations.evaluate(kept["phi"], kept["z"], True)
+    model: Model
+    runs: tuple[Run, ...]
+    free: tuple[FreeParameter, ...]
+    fixed: Mapping[str, float]
+    z: Sequence[FloatArray] | None
+    effort: Effort
+    executor: Executor | None
+    misleading: Sequence[Shift] | None
+    earlier: Fit | None
 
-    fit = Fit(
-        model,
-        tuple(runs),
-        tuple(free),
-        values,
-        kept["z"],
-        kept["cost"],
-        (),
-        kept["failed"],
-        effort.tolerance,
-        kept["misleading"],
-    )
-    return fit, evaluations
+    def fit(self, values: Mapping[str, float], z: Sequence[FloatArray], *end: Any) -> Fit:
+        """A fit that ended at `values` and `z` with a cost, evaluations and why it failed."""
+        return Fit(self.model, self.runs, self.free, values, tuple(z), *end, self.effort.tolerance)
 
+    def of_light(self, kept: Mapping[str, Any]) -> tuple[Fit, Callable[[], Sequence[Evaluation]]]:
+        """The fit of which `_End.light` was recorded, and what makes its evaluations."""
+        model, runs, free, fixed = self.model, self.runs, self.free, self.fixed
+        values = {**fixed, **all_values(free, kept["phi"])} if free else dict(fixed)
 
-def _ended(
-    model: Model,
-    runs: Sequence[Run],
-    free: Sequence[FreeParameter],
-    fixed: Mapping[str, float],
-    z: Sequence[FloatArray] | None,
-    effort: Effort,
-    executor: Executor | None,
-    misleading: Sequence[Shift] | None,
-    earlier: Fit | None,
-) -> _End:
-    """See `fit_parameters`."""
-    if not free:
-        known = [[]] * len(runs) if z is None else [[start] for start in z]
-        starts = fitted_starts(model, runs, fixed, known, effort, executor)
-        fit = Fit(
-            model,
-            tuple(runs),
-            (),
-            dict(fixed),
-            tuple(s.z[0] for s in starts),
-            float(sum(s.cost for s in starts)),
-            tuple(s.evaluations[0] for s in starts),
-            next((s.failed for s in starts if s.failed), None),
-            effort.tolerance,
-        )
-        return _End(fit, np.zeros(0))
-    simulations = simulations_of(model, runs, free, fixed, effort, executor)
-    problem = problem_of(simulations, effort)
-    if problem.refine is not None and misleading is not None:
-        problem.refine.chosen = list(misleading)
-    phi = to_search(free, {f.name: f.start for f in free})
-    phi = nearest_possible(model, free, simulations.parameters, phi)
-    values = {**fixed, **all_values(free, phi)}
-    if z is None:
-        guesses = [run.guess for run in runs]
-        z = starts_in_place(model, runs, values, guesses, effort.tolerance, executor, brief=True)
-    begun = None
-    if earlier is not None and _ends_at(earlier, simulations, values, z):
-        begun = _by_coordinates(earlier, free)
-    best = minimise(problem, phi, z, effort.iterations, effort.gain, effort.rejections, begun)
-    values = {**fixed, **all_values(free, best.phi)}
-    chosen = None if problem.refine is None else problem.refine.chosen
-    fit = Fit(
-        model,
-        tuple(runs),
-        tuple(free),
-        values,
-        tuple(best.z),
-        best.cost,
-        tuple(best.evaluations),
-        best.failed,
-        effort.tolerance,
-        None if chosen is None else tuple(chosen),
-    )
-    return _End(fit, best.phi, begun is not None and best.evaluations[0] is begun[0])
+        def evaluations() -> Sequence[Evaluation]:
+            if kept["unmoved"] and self.earlier is not None:
+                return _by_coordinates(self.earlier, free)
+            base = fixed if free else values
+            simulations = simulations_of(model, runs, free, base, self.effort, self.executor)
+            return simulations.evaluate(kept["phi"], kept["z"], True)
+
+        fit = self.fit(values, kept["z"], kept["cost"], (), kept["failed"])
+        return replace(fit, misleading=kept["misleading"]), evaluations
+
+    def ended(self) -> _End:
+        """The fit, made now."""
+        model, runs, free, fixed, z = self.model, self.runs, self.free, self.fixed, self.z
+        effort, executor = self.effort, self.executor
+        if not free:
+            known = [[]] * len(runs) if z is None else [[start] for start in z]
+            starts = fitted_starts(model, runs, fixed, known, effort, executor)
+            cost = float(sum(s.cost for s in starts))
+            failed = next((s.failed for s in starts if s.failed), None)
+            evaluations = tuple(s.evaluations[0] for s in starts)
+            fit = self.fit(dict(fixed), [s.z[0] for s in starts], cost, evaluations, failed)
+            return _End(fit, np.zeros(0))
+        simulations = simulations_of(model, runs, free, fixed, effort, executor)
+        problem = problem_of(simulations, effort)
+        if problem.refine is not None and self.misleading is not None:
+            problem.refine.chosen = list(self.misleading)
+        phi = to_search(free, {f.name: f.start for f in free})
+        phi = nearest_possible(model, free, simulations.parameters, phi)
+        values = {**fixed, **all_values(free, phi)}
+        if z is None:
+            guesses, tolerance = [run.guess for run in runs], effort.tolerance
+            z = starts_in_place(model, runs, values, guesses, tolerance, executor, brief=True)
+        begun = None
+        if self.earlier is not None and _ends_at(self.earlier, simulations, values, z):
+            begun = _by_coordinates(self.earlier, free)
+        best = minimise(problem, phi, z, effort.iterations, effort.gain, effort.rejections, begun)
+        values = {**fixed, **all_values(free, best.phi)}
+        fit = self.fit(values, best.z, best.cost, tuple(best.evaluations), best.failed)
+        if problem.refine is not None and problem.refine.chosen is not None:
+            fit = replace(fit, misleading=tuple(problem.refine.chosen))
+        return _End(fit, best.phi, begun is not None and best.evaluations[0] is begun[0])
 
 
 def _ends_at(
