@@ -230,7 +230,7 @@ def _print_errors(summary: Mapping[str, Any]) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from ptp_symbolic.numeric.diagnose.errors import over
+    from ptp_symbolic.numeric.diagnose.summary import over
     from ptp_symbolic.report.tables import declared_totals, error_measure
 
     key, unit = error_measure(declared_totals(summary))

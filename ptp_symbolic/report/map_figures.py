@@ -53,8 +53,8 @@ def residual_map_figure(
         grid = figure.subplots(len(stages), 3, sharey="row", sharex="col", squeeze=False)
         set_margins(figure, len(stages), 3)
         for row, stage in zip(grid, stages, strict=True):
-            left_over = [residual(signal, stage) for signal in signals]
-            values = np.concatenate([part for part in left_over if part is not None])
+            normalised_residual = [residual(signal, stage) for signal in signals]
+            values = np.concatenate([part for part in normalised_residual if part is not None])
             for axes, (_, coordinates, bins) in zip(row, against, strict=True):
                 draw_floor(axes, floor)
                 _draw_cloud(axes, np.concatenate(coordinates), values, stage, bins)

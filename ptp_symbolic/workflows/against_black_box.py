@@ -5,7 +5,7 @@ from typing import Any
 
 from ptp_symbolic.numeric.black_box import FreeRuns, black_box
 from ptp_symbolic.numeric.data import Log
-from ptp_symbolic.numeric.diagnose.findings import Search
+from ptp_symbolic.numeric.diagnose.stepwise import Search
 from ptp_symbolic.numeric.diagnose.trial import Task, tolerance_for
 from ptp_symbolic.numeric.diagnose.verdict import Verdict
 from ptp_symbolic.numeric.identify.constants import ROUGH

@@ -8,9 +8,8 @@ from pathlib import Path
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.black_box import require_library
 from ptp_symbolic.numeric.data import log_files, read_split_logs
-from ptp_symbolic.numeric.diagnose.preparation import turned_inputs
-from ptp_symbolic.numeric.identify.evidence import recording
-from ptp_symbolic.numeric.identify.work import Allowance
+from ptp_symbolic.numeric.diagnose.preparation import inverted_inputs
+from ptp_symbolic.numeric.identify.evidence import Allowance, recording
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.workflows.against_black_box import against_black_box
 from ptp_symbolic.workflows.preparation import look_at, workers
@@ -75,7 +74,7 @@ def diagnose_platform(
         if choice.is_cut_short:
             noted = (_cut_short(allowance, effort), *noted)
         if chosen.verdict.leaves_more:
-            noted = (*noted, *turned_inputs(chosen.found.task, chosen.found.declared))
+            noted = (*noted, *inverted_inputs(chosen.found.task, chosen.found.declared))
         beside = None
         if rivals:
             beside = against_black_box(

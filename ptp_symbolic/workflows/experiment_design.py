@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.diagnose.visibility import SEEN
+from ptp_symbolic.numeric.diagnose.preparation import SEEN
 from ptp_symbolic.numeric.experiment.machine import (
     Conditions,
     Played,

@@ -12,17 +12,15 @@ from ptp_symbolic.models import variants
 from ptp_symbolic.models.declared import free_parameters, known_values, refuse_unknown_signals
 from ptp_symbolic.numeric.data import read_logs
 from ptp_symbolic.numeric.diagnose.candidates import Candidate, find_candidates, vanished
-from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise
-from ptp_symbolic.numeric.diagnose.proposals import Proposals, placed_by_rows, propose
-from ptp_symbolic.numeric.diagnose.refits import polished
-from ptp_symbolic.numeric.diagnose.starts import from_rows
+from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise
+from ptp_symbolic.numeric.diagnose.proposals import ProposedSets, placed_by_rows, propose
+from ptp_symbolic.numeric.diagnose.refits import fit_declared, from_rows, polished
 from ptp_symbolic.numeric.diagnose.trial import Task, fitted, halving, restarted
 from ptp_symbolic.numeric.experiment.contender import Contender, from_fit, without_logs
 from ptp_symbolic.numeric.identify.constants import ROUNDING
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
+from ptp_symbolic.numeric.identify.least_squares import all_values_at_start
 from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.identify.simulations import all_values_at_start
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.workflows.preparation import effect_keys, look_at, model_of, task_for
@@ -57,7 +55,7 @@ class _Known:
     values: Mapping[str, float]
     candidates: tuple[Candidate, ...]
     task: Task | None
-    proposals: Proposals | None
+    proposals: ProposedSets | None
 
 
 def rivals_of(

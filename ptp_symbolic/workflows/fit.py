@@ -7,18 +7,16 @@ from typing import Any
 
 from ptp_symbolic.models import variants
 from ptp_symbolic.numeric.data import log_files, read_logs
-from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
-from ptp_symbolic.numeric.diagnose.errors import curves_of, error_of
-from ptp_symbolic.numeric.diagnose.floor import floor_of
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise
-from ptp_symbolic.numeric.diagnose.preparation import turned_inputs
+from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise, noise_floor_of
+from ptp_symbolic.numeric.diagnose.preparation import inverted_inputs
 from ptp_symbolic.numeric.diagnose.proposals import propose
-from ptp_symbolic.numeric.diagnose.summary import fit_table
+from ptp_symbolic.numeric.diagnose.refits import fit_declared
+from ptp_symbolic.numeric.diagnose.summary import curves_of, error_of, fit_table
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, tolerance_for
 from ptp_symbolic.numeric.identify.fit import fit_parameters
 from ptp_symbolic.numeric.identify.intervals import estimates
-from ptp_symbolic.numeric.identify.replays import estimable
-from ptp_symbolic.numeric.identify.simulations import Effort, all_values_at_start
+from ptp_symbolic.numeric.identify.least_squares import Effort, all_values_at_start
+from ptp_symbolic.numeric.identify.windows import estimable
 from ptp_symbolic.platform import Platform, platform_text
 from ptp_symbolic.workflows.preparation import look_at, model_of, task_for, workers
 from ptp_symbolic.workflows.provenance import provenance
@@ -59,11 +57,11 @@ def fit_platform(
         trial = None
         if task.free:
             task, trial = fit_declared(task, propose(task))
-            noted = (*noted, *turned_inputs(task, trial))
+            noted = (*noted, *inverted_inputs(task, trial))
             trial = replace(trial, fit=estimable(trial.fit, task.input_noise, executor))
         begun = _as_declared(task)  # over the windows of the fit, as what comes after
         trial = trial or begun
-        floor = floor_of(task, trial, carried_noise(task, trial.fit))
+        floor = noise_floor_of(task, trial, carried_noise(task, trial.fit))
     units = model.units
     after = error_of(trial.fit, units)
     error = {

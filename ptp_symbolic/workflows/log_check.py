@@ -8,12 +8,12 @@ from typing import Any
 
 from ptp_symbolic.models import variants
 from ptp_symbolic.numeric.data import read_logs
+from ptp_symbolic.numeric.diagnose.preparation import Visible, visible_amounts
 from ptp_symbolic.numeric.diagnose.summary import repeatability_table
 from ptp_symbolic.numeric.diagnose.trial import fitted
-from ptp_symbolic.numeric.diagnose.visibility import Visible, visible_amounts
-from ptp_symbolic.numeric.identify.log_facts import LogFacts, facts_of
+from ptp_symbolic.numeric.identify.least_squares import all_values_at_start
 from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.identify.simulations import all_values_at_start
+from ptp_symbolic.numeric.identify.run_preparation import LogFacts, facts_of
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.report.log_check import render_log_check

@@ -12,9 +12,8 @@ from ptp_symbolic.numeric.data import Log, refuse_motionless, refuse_wrapped_ang
 from ptp_symbolic.numeric.diagnose.preparation import task_of
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, usable_cores
 from ptp_symbolic.numeric.identify.constants import MATERIAL
-from ptp_symbolic.numeric.identify.evidence import InTurn, simulates
+from ptp_symbolic.numeric.identify.evidence import Allowance, InTurn, Threads, simulates
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
-from ptp_symbolic.numeric.identify.work import Allowance, Threads
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.ahead import (
     HELD_SAMPLES,

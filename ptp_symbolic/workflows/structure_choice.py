@@ -10,12 +10,17 @@ from typing import Any
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import variants
 from ptp_symbolic.models.structures import Rebuilt, pairs, structures
-from ptp_symbolic.numeric.diagnose.findings import Search
-from ptp_symbolic.numeric.diagnose.floor import floor_of, leaves_noise_alone
-from ptp_symbolic.numeric.diagnose.gain import Gain, gain
-from ptp_symbolic.numeric.diagnose.groups import Rival, confusable, is_clearly_more
-from ptp_symbolic.numeric.diagnose.held_out import held_out_gain, is_borne_out, simulated_freely
+from ptp_symbolic.numeric.diagnose.gain import (
+    Gain,
+    gain,
+    held_out_gain,
+    is_validated,
+    simulated_freely,
+)
+from ptp_symbolic.numeric.diagnose.groups import Alternative, confusable, is_materially_better
+from ptp_symbolic.numeric.diagnose.noise_floor import leaves_noise_alone, noise_floor_of
 from ptp_symbolic.numeric.diagnose.search import search
+from ptp_symbolic.numeric.diagnose.stepwise import Search
 from ptp_symbolic.numeric.diagnose.structures import (
     FittedStructure,
     alternatives,
@@ -25,7 +30,7 @@ from ptp_symbolic.numeric.diagnose.structures import (
     why_rejected,
 )
 from ptp_symbolic.numeric.diagnose.summary import ranking_row
-from ptp_symbolic.numeric.diagnose.trial import Task, misfits, ranked
+from ptp_symbolic.numeric.diagnose.trial import Task, deviances, ranked
 from ptp_symbolic.numeric.diagnose.verdict import (
     PARTLY,
     UNEXPLAINED,
@@ -73,10 +78,10 @@ class Searched:
     found: Search
 
     @property
-    def is_quiet(self) -> bool:
+    def is_noise_alone(self) -> bool:
         """Whether the chosen set leaves noise alone."""
         trial = self.found.chosen
-        return leaves_noise_alone(trial, floor_of(self.found.task, trial, self.found.carried))
+        return leaves_noise_alone(trial, noise_floor_of(self.found.task, trial, self.found.carried))
 
     @cached_property
     def outcome(self) -> Outcome:
@@ -118,7 +123,7 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
         return _searched(there, structure, logs, brief=brief)
 
     terms = searched(None, brief=bool(every))
-    is_enough = terms.is_quiet and not terms.found.chosen.candidates
+    is_enough = terms.is_noise_alone and not terms.found.chosen.candidates
     is_stopped = logs.allowance.is_out_of_time
     if not every or is_enough or is_stopped:
         why = "the residual of the declared structure is noise alone"
@@ -127,15 +132,15 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
         is_cut_short = is_stopped or terms.found.is_cut_short
         return Choice(terms.outcome, terms.outcome, (), untried, is_cut_short)
     fitted = fit_structures(platform, every, logs)
-    if not terms.is_quiet and not fitted.quiet and not logs.allowance.is_over:
-        fitted = _led_on(platform, fitted, terms, logs)
+    if not terms.is_noise_alone and not fitted.quiet and not logs.allowance.is_over:
+        fitted = _over_windows(platform, fitted, terms, logs)
         if not fitted.quiet and fitted.order and not logs.allowance.is_over:
             fitted, beside = _paired(fitted, every, logs)
             platforms |= _platforms(beside)
-    followed = fitted.quiet or ([] if terms.is_quiet else fitted.order[:FOLLOWED])
+    followed = fitted.quiet or ([] if terms.is_noise_alone else fitted.order[:FOLLOWED])
     outcomes = [searched(s, brief=True) for s in followed]
-    is_late = not terms.is_quiet and logs.allowance.is_over
-    if not terms.is_quiet and not is_late:
+    is_late = not terms.is_noise_alone and logs.allowance.is_over
+    if not terms.is_noise_alone and not is_late:
         outcomes, terms = _at_length(outcomes, terms, searched)
     chosen, refused = _chosen(terms.outcome, [s.outcome for s in outcomes], fitted.every, logs)
     order = fitted.order
@@ -150,20 +155,20 @@ def _platforms(every: Sequence[Rebuilt]) -> dict[tuple[tuple[str, ...], frozense
     return {(rebuilt.keys, rebuilt.provides): rebuilt.platform for rebuilt in every}
 
 
-def _led_on(platform: Platform, fitted: Fitted, terms: Searched, logs: Logs) -> Fitted:
+def _over_windows(platform: Platform, fitted: Fitted, terms: Searched, logs: Logs) -> Fitted:
     """The structures led over windows: beside the effects that were found where these surely halve
     the squared error of the declared structure, because others show beside them only.
     """
     trial = terms.found.chosen
     declared = on_runs_of(terms.found.task, terms.found.declared, trial.fit.runs)
     if all(c.is_declared_value for c in trial.candidates) or not gain(trial, declared).is_most:
-        return fitted.led_on(logs)
+        return fitted.over_windows_too(logs)
     beside = with_effects(platform, trial)
     own = {s.keys for s in fitted.every}
     every = [rebuilt for rebuilt in structures(beside)[0] if rebuilt.keys in own]
-    led = fit_structures(beside, every, logs)
-    led = led if led.quiet else led.led_on(logs)
-    return led if led.order else fitted.led_on(logs)
+    found = fit_structures(beside, every, logs)
+    found = found if found.quiet else found.over_windows_too(logs)
+    return found if found.order else fitted.over_windows_too(logs)
 
 
 def _paired(
@@ -184,7 +189,7 @@ def _paired(
     logs.progress(f"fitting pairs with {' + '.join(best.keys)}")
     found = fit_structures(there, beside, logs)
     if not found.quiet:
-        found = found.led_on(logs)
+        found = found.over_windows_too(logs)
     if not found.quiet:
         return fitted, ()
     finished = tuple(found.begun[k] for k in found.better)
@@ -200,7 +205,7 @@ def _at_length(
     declared one unless that is far behind.
     """
     best = _best_fit([terms, *outcomes])
-    if best is not terms and not best.is_quiet:
+    if best is not terms and not best.is_noise_alone:
         whole = searched(best.structure, False)
         outcomes = [whole if s is best else s for s in outcomes]
         best = whole
@@ -213,7 +218,7 @@ def _best_fit(searches: Sequence[Searched]) -> Searched:
     """The search that ends with the best fit, in the windows of the first one."""
     pattern = searches[0].found.chosen.fit.runs
     trials = [on_runs_of(s.found.task, s.found.chosen, pattern) for s in searches]
-    cost = misfits(trials)
+    cost = deviances(trials)
     return searches[min(range(len(cost)), key=lambda k: cost[k])]
 
 
@@ -259,7 +264,7 @@ def _searched(
 
 def _is_enough(structure: FittedStructure, platform: Platform) -> bool:
     """Whether a structure leaves noise alone with no effect beside those of its `platform`."""
-    return structure.is_quiet and len(structure.task.model.effects) == len(platform.effects)
+    return structure.is_noise_alone and len(structure.task.model.effects) == len(platform.effects)
 
 
 def _chosen(
@@ -268,7 +273,7 @@ def _chosen(
     """The outcome that predicts best, and why structures that were followed are not named."""
     refused: dict[FittedStructure, str] = {}
     accepted: list[Outcome] = []
-    rivals: list[Rival] = []
+    as_good: list[Alternative] = []
     for outcome in outcomes:
         structure = outcome.structure
         assert structure is not None
@@ -278,7 +283,7 @@ def _chosen(
         task = outcome.found.task
         earned, why = why_rejected(structure, task, final, without, quiet, len(others))
         unconfirmed = on_runs_of(terms.found.task, terms.found.chosen, final.fit.runs)
-        if why is None and is_clearly_more(gain(unconfirmed, final), 1, task.material):
+        if why is None and is_materially_better(gain(unconfirmed, final), 1, task.material):
             why = f"{' + '.join(terms.found.chosen.keys)} predicts better, but is not confirmed"
         if why is None:
             named = _with_structure(outcome, terms, earned, others, logs)
@@ -288,22 +293,22 @@ def _chosen(
             why = "reduces the error of the validation runs too little, or not significantly"
         elif quiet and terms.verdict.final.candidates:
             against = gain(without, final)
-            if not is_clearly_more(against, 1, structure.task.material):
+            if not is_materially_better(against, 1, structure.task.material):
                 candidates = (*structure.added, *final.candidates)
-                rivals.append(Rival(replace(final, candidates=candidates), against))
+                as_good.append(Alternative(replace(final, candidates=candidates), against))
         refused[structure] = why
     if accepted:
         best = ranked([o.verdict.final for o in accepted])[0] if len(accepted) > 1 else None
         return next(o for o in accepted if best is None or o.verdict.final is best), refused
-    if rivals:
-        return _beside(terms, rivals), refused
+    if as_good:
+        return _beside(terms, as_good), refused
     return terms, refused
 
 
-def _beside(terms: Outcome, rivals: Sequence[Rival]) -> Outcome:
+def _beside(terms: Outcome, as_good: Sequence[Alternative]) -> Outcome:
     """The outcome of the declared structure, with structures that its terms cannot be told from."""
     verdict = terms.verdict
-    found = confusable(verdict.final, [*verdict.rivals, *rivals])
+    found = confusable(verdict.final, [*verdict.alternatives, *as_good])
     merged = {
         key: tuple(sorted({*verdict.confusable.get(key, ()), *found[key]}))
         for key in verdict.final.keys
@@ -323,7 +328,7 @@ def _with_structure(
     assert structure is not None
     own = named_effects(structure, verdict.final)
     final = replace(verdict.final, candidates=(*own, *verdict.final.candidates))
-    alike = [Rival(s.trial, gain_over(structure, s)) for s in alternatives(structure, others)]
+    alike = [Alternative(s.trial, gain_over(structure, s)) for s in alternatives(structure, others)]
     names = {
         key for s in alternatives(structure, others) for key in s.keys if key not in structure.keys
     }
@@ -342,7 +347,7 @@ def _with_structure(
             declared=declared,
             gains=gains,
             confusable=merged,
-            rivals=(*verdict.rivals, *alike),
+            alternatives=(*verdict.alternatives, *alike),
             closest=None,
             before=before,
             held_out=held_out_gain(verdict.after, before),
@@ -362,7 +367,7 @@ def _is_borne_out(named: Outcome, terms: Outcome, quiet: bool) -> bool:
     held_out = named.verdict.held_out
     if held_out is None:
         return False
-    return is_borne_out(held_out, quiet, False, named.task.material)
+    return is_validated(held_out, quiet, False, named.task.material)
 
 
 def _row(

@@ -13,12 +13,12 @@ from ptp_symbolic.numeric.diagnose.structures import (
     FittedStructure,
     begin_structure,
     by_fit,
+    deviance,
     is_better,
-    is_told,
-    misfit,
+    is_identifiable,
 )
 from ptp_symbolic.numeric.diagnose.trial import side_by_side
-from ptp_symbolic.numeric.identify.work import Allowance
+from ptp_symbolic.numeric.identify.evidence import Allowance
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.workflows.preparation import model_of, task_for
 from ptp_symbolic.workflows.result import Progress
@@ -68,15 +68,17 @@ class Fitted:
         """The best that leaves noise alone, if any does: the logs tell a parameter of what it is
         named after, where they do so of any.
         """
-        quiet = [s for s in self.order if s.is_quiet]
-        told = [s for s in quiet if is_told(s.added[0], s.trial)]
+        quiet = [s for s in self.order if s.is_noise_alone]
+        told = [s for s in quiet if is_identifiable(s.added[0], s.trial)]
         return (told or quiet)[:1]
 
-    def led_on(self, logs: Logs) -> "Fitted":
-        """The declared structure and the better half led over windows."""
-        logs.progress("leading structures over windows")
+    def over_windows_too(self, logs: Logs) -> "Fitted":
+        """The declared structure and the better half fitted over windows."""
+        logs.progress("fitting structures over windows")
         return replace(
-            self, alone=self.alone.led_on(), begun=_each(Begun.led_on, self.begun, self.better)
+            self,
+            alone=self.alone.over_windows_too(),
+            begun=_each(Begun.over_windows_too, self.begun, self.better),
         )
 
 
@@ -125,7 +127,7 @@ def _begun(
 
 def _better_half(begun: Sequence[Begun], declared: FittedStructure) -> tuple[int, ...]:
     """Which structures fit better than half of them, at least as many as are followed."""
-    cost = [misfit(b.fitted, declared) for b in begun]
+    cost = [deviance(b.fitted, declared) for b in begun]
     best_first = sorted(range(len(begun)), key=cost.__getitem__)
     return tuple(best_first[: max(FOLLOWED, (len(begun) + 1) // 2)])
 
@@ -139,7 +141,7 @@ def _from_those_that_contain(
 
     def again(one: Begun) -> Begun:
         larger = [b.fitted for b in begun if one.fitted.provides < b.fitted.provides]
-        best = min(larger, key=lambda s: misfit(s, declared), default=None)
+        best = min(larger, key=lambda s: deviance(s, declared), default=None)
         if best is None or not is_better(best, one.fitted):
             return one
         return one.from_values(best.trial.values)

@@ -8,12 +8,12 @@ import numpy as np
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.diagnose.confirm import at_bound
-from ptp_symbolic.numeric.diagnose.errors import curves_of
-from ptp_symbolic.numeric.diagnose.floor import Floor
 from ptp_symbolic.numeric.diagnose.hints import further_hints
+from ptp_symbolic.numeric.diagnose.noise_floor import NoiseFloor
 from ptp_symbolic.numeric.diagnose.remainder import hints, remainder, residual_tests
 from ptp_symbolic.numeric.diagnose.summary import (
     added_effects,
+    curves_of,
     error_table,
     fit_table,
     gain_table,
@@ -25,7 +25,7 @@ from ptp_symbolic.numeric.diagnose.summary import (
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.diagnose.verdict import reasons
 from ptp_symbolic.numeric.identify.intervals import estimates
-from ptp_symbolic.numeric.identify.replays import estimable
+from ptp_symbolic.numeric.identify.windows import estimable
 from ptp_symbolic.platform import Platform, platform_text
 from ptp_symbolic.report.changes import interval, render_changes
 from ptp_symbolic.report.diagnosis import render_diagnosis, write_curves_csv
@@ -247,7 +247,7 @@ def _module_of(extended: Platform) -> tuple[dict[str, str], list[str]]:
         return {}, [f"The declared and the found values exclude each other. {error}"]
 
 
-def _carried_remarks(platform: Platform, floor: Floor) -> list[str]:
+def _carried_remarks(platform: Platform, floor: NoiseFloor) -> list[str]:
     """Inputs whose noise, estimated from the logs, leaves more in an output than its own does. A
     command that a controller computed from a noisy angle looks noisy, and is known exactly.
     """

@@ -6,7 +6,6 @@ switched off may lead where nothing was evaluated: then its price is not known.
 
 import json
 import re
-from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -19,13 +18,13 @@ from ptp_symbolic.numeric.diagnose import along_rows, search, structures
 from ptp_symbolic.numeric.diagnose.proposals import in_rows_of, propose
 from ptp_symbolic.numeric.diagnose.trial import Task
 from ptp_symbolic.numeric.identify.evidence import (
+    Allowance,
     Entry,
     Evidence,
     NotStoredError,
     key_of,
     recording,
 )
-from ptp_symbolic.numeric.identify.work import Allowance
 from ptp_symbolic.platform import Platform, read_platform
 from ptp_symbolic.workflows import structure_choice, structure_fits
 from ptp_symbolic.workflows.diagnosis import SAMPLES
@@ -49,6 +48,8 @@ class Answer:
     missing: int = 0
 
     def __str__(self) -> str:
+        if self.missing:
+            return f"needs {self.missing} refits that were not made"
         names = [" or ".join([key, *alike]) for key, alike in self.named]
         return f"{self.verdict} ({', '.join(names) or 'no name'})"
 
@@ -170,31 +171,38 @@ class Change:
 
 
 def prices(folders: Sequence[Path], pattern: str, simulate: bool) -> Iterator[str]:
-    """A line for every rule whose name has the pattern, with the verdicts that change without it,
-    each on a line of its own; first the verdicts with all rules.
+    """A line for the verdict of every folder and for each that changes without a rule whose name
+    has the pattern, then one for every such rule with how many do.
+
+    One folder after the other: what is made of its logs takes most of the time, and the memory.
     """
-    cases = [Case.read(folder) for folder in folders]
-    usual = []
-    for case in cases:
-        usual.append(case.answer(None, simulate=simulate))
-        grade = f"{usual[-1].grade or 'truth not given'}: "
-        what = f"needs {usual[-1].missing} evaluations" if usual[-1].missing else str(usual[-1])
-        yield f"{case.folder.name}: {grade}{what}"
-    for rule in RULES:
-        if not re.search(pattern, rule.name):
-            continue
-        changes = [
-            Change(case.folder, before, case.answer(rule, simulate=simulate))
-            for case, before in zip(cases, usual, strict=True)
-        ]
-        counts = Counter(change.kind for change in changes)
-        said = [f"{count} {kind}" for kind, count in sorted(counts.items()) if kind != "needs"]
+    rules = [rule for rule in RULES if re.search(pattern, rule.name)]
+    found: dict[str, list[Change]] = {rule.name: [] for rule in rules}
+    for folder in folders:
+        case = Case.read(folder)
+        usual = case.answer(None, simulate=simulate)
+        yield f"{folder.name}: {usual.grade or 'truth not given'}: {usual}"
+        for rule in rules if not usual.missing else ():
+            change = Change(folder, usual, case.answer(rule, simulate=simulate))
+            found[rule.name].append(change)
+            if change.kind != "none":
+                yield f"    without {rule.name}: {change.after}"
+    for rule in rules:
+        yield f"{rule.name}: {_counted(found[rule.name])}"
+
+
+def _counted(changes: Sequence[Change]) -> str:
+    """How many verdicts change, by kind, and in which folders; what is missing at first."""
+    folders: dict[str, list[str]] = {}
+    for change in changes:
+        name = change.folder.name
+        number = re.match(r"\d+(?=-)", name)
+        folders.setdefault(change.kind, []).append(number[0] if number else name)
+    unchanged, needs = len(folders.pop("none", ())), folders.pop("needs", [])
+    said = [f"{len(names)} {kind} ({', '.join(names)})" for kind, names in sorted(folders.items())]
+    if unchanged:
+        said.append(f"{unchanged} unchanged")
+    if needs:
         missing = sum(change.after.missing for change in changes)
-        if missing:
-            said.append(
-                f"{counts['needs']} need evaluations that were not made, {missing} at first"
-            )
-        yield f"{rule.name}: {', '.join(said)}"
-        for change in changes:
-            if change.kind not in ("none", "needs"):
-                yield f"    {change.folder.name}: {change.before} -> {change.after}"
+        said.append(f"{len(needs)} need refits, {missing} at first ({', '.join(needs)})")
+    return ", ".join(said)

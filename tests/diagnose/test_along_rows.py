@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.diagnose import along_rows
-from ptp_symbolic.numeric.diagnose.along_rows import AlongMotion, grown_along_motion
-from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
-from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise
-from ptp_symbolic.numeric.diagnose.proposals import propose
-from ptp_symbolic.numeric.diagnose.seeker import Seeker
+from ptp_symbolic.numeric.diagnose.along_rows import AlongMotion, extended_along_motion
+from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise
+from ptp_symbolic.numeric.diagnose.proposals import declared_start, propose
+from ptp_symbolic.numeric.diagnose.refits import fit_declared
+from ptp_symbolic.numeric.diagnose.stepwise import StepwiseSearch
 from ptp_symbolic.numeric.diagnose.trial import fitted
 from ptp_symbolic.numeric.diagnose.verdict import _near_floor, _Set
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
@@ -29,7 +28,7 @@ def grown(
 ) -> AlongMotion | None:
     with spring_table(folder, stiffness, GUST, lasting, gyro) as task:
         declared = fitted(task, (), declared_start(task), None)
-        return grown_along_motion(task, propose(task), declared, task.train)
+        return extended_along_motion(task, propose(task), declared, task.train)
 
 
 @pytest.mark.parametrize("gyro", [False, True])
@@ -68,7 +67,7 @@ def test_validation_runs_are_seen_in_windows_as_short_as_training_runs(
     monkeypatch.setattr(along_rows, "equation_space", noted)
     with spring_table(tmp_path, STIFFNESS, GUST) as task:
         declared = fitted(task, (), declared_start(task), None)
-        assert grown_along_motion(task, propose(task), declared, task.train) is not None
+        assert extended_along_motion(task, propose(task), declared, task.train) is not None
     train, validate = spaces
     assert (train.runs, validate.runs) == (task.whole, task.validate)
     assert (train.half_width, validate.half_width) == (0.15, 0.15)
@@ -88,16 +87,16 @@ def test_a_set_that_reaches_the_floor_of_the_outputs_is_fitted_to_these(
     with spring_table(tmp_path, STIFFNESS, gust) as task:
         proposals = propose(task)
         task, declared = fit_declared(task, proposals)
-        seeker = Seeker(task, declared, proposals, carried_noise(task, declared.fit))
+        stepwise = StepwiseSearch(task, declared, proposals, carried_noise(task, declared.fit))
         (spring,) = [
             c for c in task.candidates if c.key == "cable_spring@pan" and len(c.defining) == 1
         ]
         truth = {"J_pan": INERTIA - PAYLOAD, "b_pan": DAMPING, "k1_cable_pan": STIFFNESS}
         values = declared.values | {name: 1.03 * value for name, value in truth.items()}
         along = fitted(task, (spring,), values, None)
-        found = _near_floor(seeker, [_Set(along, along, along.fit, {}, {}, ())])
+        found = _near_floor(stepwise, [_Set(along, along, along.fit, {}, {}, ())])
         assert (found is not None) is near
         if found is not None:
             for name, value in truth.items():
                 assert found.values[name] == pytest.approx(value, rel=1e-3), name
-    assert _near_floor(seeker, []) is None
+    assert _near_floor(stepwise, []) is None

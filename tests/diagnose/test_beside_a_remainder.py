@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.confirmed_sets import _doubt_beside_a_remainder
-from ptp_symbolic.numeric.diagnose.findings import Step
+from ptp_symbolic.numeric.diagnose.confirm import _doubt_beside_residual
 from ptp_symbolic.numeric.diagnose.gain import gain
+from ptp_symbolic.numeric.diagnose.stepwise import Step
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.straight import finished
@@ -27,9 +27,7 @@ def doubt_for(*sizes: float) -> str | None:
     more = [size * left for size, left in zip(sizes, LEFT, strict=True)]
     whole = Trial((candidate,), finished(list(LEFT), SLOPES, free=FREE))
     without = Trial((), finished(more, SLOPES, free=FREE))
-    return _doubt_beside_a_remainder(
-        TASK, whole, Step(candidate, gain(whole, without), 0.0, without)
-    )
+    return _doubt_beside_residual(TASK, whole, Step(candidate, gain(whole, without), 0.0, without))
 
 
 @pytest.mark.parametrize(

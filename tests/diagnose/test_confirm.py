@@ -9,14 +9,14 @@ from scipy import stats
 from ptp_symbolic.numeric.diagnose.candidates import Candidate, with_what_needs_it
 from ptp_symbolic.numeric.diagnose.confirm import (
     at_bound,
+    depends_on_run,
+    first_dominates,
     is_amount_known,
-    is_done_by_others,
-    leads,
-    unstable_without,
+    is_reproduced_by_others,
     why_unconfirmed,
 )
-from ptp_symbolic.numeric.diagnose.findings import is_earned, looked_at
 from ptp_symbolic.numeric.diagnose.gain import Gain, p_value
+from ptp_symbolic.numeric.diagnose.stepwise import is_earned, looked_at
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.constants import FALSE_ALARM
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
@@ -45,17 +45,17 @@ def waves(count: int) -> list[Floats]:
 
 
 def test_an_effect_that_all_runs_ask_for_holds() -> None:
-    assert unstable_without(fit_of(waves(4), [1.0] * 4), EFFECT) is None
+    assert depends_on_run(fit_of(waves(4), [1.0] * 4), EFFECT) is None
 
 
 def test_an_effect_that_one_run_asks_for_and_others_deny_does_not_hold() -> None:
     """Of the four the last asks for 4, the others for nothing: 1 in all, 0 without it."""
-    assert unstable_without(fit_of(waves(4), [0.0, 0.0, 0.0, 4.0]), EFFECT) == "run 3"
+    assert depends_on_run(fit_of(waves(4), [0.0, 0.0, 0.0, 4.0]), EFFECT) == "run 3"
 
 
 def test_an_effect_that_one_run_alone_can_show_is_let_be() -> None:
     columns = [0.0 * w for w in waves(3)] + waves(1)
-    assert unstable_without(fit_of(columns, [0.0, 0.0, 0.0, 1.0]), EFFECT) is None
+    assert depends_on_run(fit_of(columns, [0.0, 0.0, 0.0, 1.0]), EFFECT) is None
 
 
 @pytest.mark.parametrize(("refitted", "left_out"), [(0.05, "run 0"), (0.15, None)])
@@ -67,19 +67,19 @@ def test_a_fit_without_a_run_is_held_against_the_one_in_which_a_bad_run_weighs_l
     """
     fit = fit_of([waves(1)[0]] * 6, [1.0] * 5 + [-8.0])
     again = replace(fit, values={"k": refitted})
-    assert unstable_without(fit, EFFECT, lambda name: again) == left_out
+    assert depends_on_run(fit, EFFECT, lambda name: again) == left_out
 
 
 @pytest.mark.parametrize(("second", "is_so"), [(0.3, True), (-1.3, False)])
 def test_the_part_that_has_to_lead_is_the_larger_one(second: float, is_so: bool) -> None:
     """Of two amounts the first leads, which is one; where none has to, any is right."""
     other = free_parameter("k2", 1.0, -5.0, 5.0)
-    pair = Candidate("pair", None, "", "", (SPRING, other), {"k": 0.0, "k2": 0.0}, leading=("k",))
+    pair = Candidate("pair", None, "", "", (SPRING, other), {"k": 0.0, "k2": 0.0}, dominant=("k",))
     (wave,) = waves(1)
     slopes = [-np.column_stack([wave, np.roll(wave, 7)])]
     fit = finished([0.0 * wave], slopes, None, (SPRING, other), {"k": 1.0, "k2": second})
-    assert leads(fit, pair) is is_so
-    assert leads(fit, replace(pair, leading=()))
+    assert first_dominates(fit, pair) is is_so
+    assert first_dominates(fit, replace(pair, dominant=()))
 
 
 @pytest.mark.parametrize(("stiffness", "is_known"), [(0.01, False), (1.0, True)])
@@ -126,8 +126,8 @@ def test_an_effect_of_a_machine_of_which_all_is_known_is_done_by_nothing() -> No
     columns = [w[:, None] for w in waves(4)]
     noise = [np.random.default_rng(8).standard_normal(len(c)) for c in columns]
     fit = finished(noise, [-c for c in columns], None, (SPRING,), {"k": 0.4})
-    assert not is_done_by_others(fit, EFFECT)
-    assert not is_done_by_others(replace(fit, values={"k": 0.0}), EFFECT)
+    assert not is_reproduced_by_others(fit, EFFECT)
+    assert not is_reproduced_by_others(replace(fit, values={"k": 0.0}), EFFECT)
 
 
 @pytest.mark.parametrize(("lower", "is_done"), [(-9.0, True), (0.6, True), (0.95, False)])
@@ -137,7 +137,7 @@ def test_others_do_what_they_can_within_their_bounds(lower: float, is_done: bool
     columns = [np.column_stack([w, -w]) for w in waves(4)]
     noise = [np.random.default_rng(8).standard_normal(len(c)) for c in columns]
     fit = finished(noise, [-c for c in columns], None, (SPRING, other), {"k": 0.4, "J": 1.0})
-    assert is_done_by_others(fit, EFFECT) is is_done
+    assert is_reproduced_by_others(fit, EFFECT) is is_done
 
 
 @pytest.mark.parametrize(("amount", "spoilt"), [(0.1, False), (0.5, True), (0.0, False)])
@@ -151,7 +151,7 @@ def test_only_what_others_do_is_held_against_an_effect(amount: float, spoilt: bo
     noise[1] *= 60.0 if spoilt else 1.0
     slopes = [-c if amount else 0.0 * c for c in columns]
     fit = finished(noise, slopes, None, (SPRING, other), {"k": amount, "J": 1.0})
-    assert not is_done_by_others(fit, EFFECT)
+    assert not is_reproduced_by_others(fit, EFFECT)
 
 
 def test_an_effect_of_no_amount_through_which_another_acts_is_known_with_that() -> None:
@@ -174,13 +174,13 @@ def test_an_amount_is_known_whatever_its_shape() -> None:
     the axis is seen, and that is not zero.
     """
     azimuth = free_parameter("azimuth", 1.0, -7.0, 7.0)
-    shaken = Candidate("shaken", None, "", "", (SPRING, azimuth), {"k": 0.0})
+    by_input_noise = Candidate("by_input_noise", None, "", "", (SPRING, azimuth), {"k": 0.0})
     columns = [np.column_stack([w, 0.5 * w]) for w in waves(4)]
     noise = [np.random.default_rng(8).standard_normal(len(c)) for c in columns]
     slopes = [-c * np.array([SPRING.scale, azimuth.scale]) for c in columns]
     fit = finished(noise, slopes, None, (SPRING, azimuth), {"k": 1.0, "azimuth": 0.5})
     assert not any(e.identified for e in estimates(fit))
-    assert is_amount_known(fit, shaken)
+    assert is_amount_known(fit, by_input_noise)
 
 
 @pytest.mark.parametrize(("value", "named"), [(4.9999, "k"), (-5.0, "k"), (0.0, None), (2.0, None)])

@@ -9,10 +9,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from ptp_symbolic.numeric.diagnose.cut_runs import in_windows_of
-from ptp_symbolic.numeric.diagnose.declared_fit import led_over_windows
-from ptp_symbolic.numeric.diagnose.errors import windows_of
-from ptp_symbolic.numeric.diagnose.left_over import left_over
-from ptp_symbolic.numeric.diagnose.proposals import Proposals
+from ptp_symbolic.numeric.diagnose.noise_floor import normalised_residual
+from ptp_symbolic.numeric.diagnose.proposals import ProposedSets
+from ptp_symbolic.numeric.diagnose.refits import fitted_over_windows
+from ptp_symbolic.numeric.diagnose.summary import windows_of
 from ptp_symbolic.numeric.diagnose.trial import Task, fitted
 from ptp_symbolic.numeric.identify.constants import ITERATIONS
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
@@ -94,12 +94,14 @@ def test_windows_that_the_fitted_model_cannot_follow_are_cut_again(task: Task) -
         free=(free_parameter("b_pan", 0.0, 0.0, 1e-9),),
         fixed=heavy,
     )
-    part, trial = led_over_windows(known, Proposals(heavy, (), tuple, (), (), False, None, None))
+    part, trial = fitted_over_windows(
+        known, ProposedSets(heavy, (), tuple, (), (), False, None, None)
+    )
     assert len(part.train) == 4
     assert len(part.validate) == 4
     assert part.few == part.train
     whole = fitted(known, (), heavy, None, ITERATIONS)
-    assert np.max(left_over(trial.fit)) < 0.6 * np.max(left_over(whole.fit))
+    assert np.max(normalised_residual(trial.fit)) < 0.6 * np.max(normalised_residual(whole.fit))
 
 
 def test_a_set_that_multiplies_none_leaves_the_runs_as_they_are(task: Task) -> None:

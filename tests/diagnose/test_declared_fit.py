@@ -6,15 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose.declared_fit import (
-    as_fitted_alone,
-    better_over_same_runs,
-    over_whole_runs,
-)
-from ptp_symbolic.numeric.diagnose.findings import Search, Tried
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise
+from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
+from ptp_symbolic.numeric.diagnose.refits import better_over_same_runs, over_whole_runs
+from ptp_symbolic.numeric.diagnose.stepwise import Search, Tried
 from ptp_symbolic.numeric.diagnose.trial import fitted
+from ptp_symbolic.numeric.diagnose.verdict import with_declared_over_windows
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.diagnosis import diagnose_platform
 from ptp_symbolic.workflows.fit import fit_platform
@@ -28,14 +25,16 @@ def test_a_search_that_ended_early_gives_the_declared_model_its_best_fit(tmp_pat
         task, end = over_whole_runs(task, proposals)
         stuck = fitted(task, (), end.values | {"b_pan": 2.0 * DAMPING}, None)
         carried = carried_noise(task, end.fit)
-        found = Search(task, stuck, stuck, (), Tried(), proposals, carried, False, is_led=False)
-        best = as_fitted_alone(found)
+        found = Search(
+            task, stuck, stuck, (), Tried(), proposals, carried, False, is_over_windows=False
+        )
+        best = with_declared_over_windows(found)
     assert best.declared is best.chosen
     assert best.declared.values["b_pan"] == pytest.approx(DAMPING, rel=0.01)
     assert best.declared.values["J_pan"] == pytest.approx(INERTIA - PAYLOAD, rel=0.01)
-    assert as_fitted_alone(best) is best
-    led = replace(found, is_led=True)
-    assert as_fitted_alone(led) is led
+    assert with_declared_over_windows(best) is best
+    led = replace(found, is_over_windows=True)
+    assert with_declared_over_windows(led) is led
 
 
 def test_windows_that_lead_to_a_worse_place_lead_nowhere(tmp_path: Path) -> None:

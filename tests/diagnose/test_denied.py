@@ -5,11 +5,11 @@ from pathlib import Path
 import pytest
 
 from ptp_symbolic.numeric.data import Log
-from ptp_symbolic.numeric.diagnose.confirmed_sets import denied
-from ptp_symbolic.numeric.diagnose.declared_fit import over_whole_runs
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise
+from ptp_symbolic.numeric.diagnose.confirm import rejected_on_validation
+from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
-from ptp_symbolic.numeric.diagnose.seeker import Seeker
+from ptp_symbolic.numeric.diagnose.refits import over_whole_runs
+from ptp_symbolic.numeric.diagnose.stepwise import StepwiseSearch
 from ptp_symbolic.numeric.diagnose.trial import fitted
 from tests.diagnose.spring_table import STIFFNESS, log, table_of
 
@@ -30,13 +30,13 @@ def test_validation_runs_deny_an_effect_that_they_do_not_have(
     with table_of(tmp_path, logged, VALIDATION) as task:
         proposals = propose(task)
         task, declared = over_whole_runs(task, proposals)
-        seeker = Seeker(task, declared, proposals, carried_noise(task, declared.fit))
+        stepwise = StepwiseSearch(task, declared, proposals, carried_noise(task, declared.fit))
         both = tuple(
             min((c for c in task.candidates if c.key == key), key=lambda c: len(c.free))
             for key in ("cable_spring@pan", "input_delay@pan")
         )
         start = declared.values | {f.name: f.start for c in both for f in c.free}
-        whole = seeker.polished(fitted(task, both, start, None))
-        found = denied(task, whole, [seeker.step(whole, c) for c in both])
+        whole = stepwise.polished(fitted(task, both, start, None))
+        found = rejected_on_validation(task, whole, [stepwise.step(whole, c) for c in both])
     assert (found is None) is still_there
     assert found is None or found.candidate.key == "input_delay@pan"

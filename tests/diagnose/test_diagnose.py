@@ -206,23 +206,24 @@ def test_a_rule_has_the_price_that_a_hand_gives_it(
     """
     verdict = "ptp_symbolic.numeric.diagnose.verdict"
 
-    def from_elsewhere(seeker, chosen, refused=None):
+    def from_elsewhere(stepwise, chosen, refused=None):
         moved = {n: 1.01 * v for n, v in chosen.values.items()}
-        fitted(seeker.task, chosen.candidates, moved, None)
+        fitted(stepwise.task, chosen.candidates, moved, None)
 
     rules = (
         Rule("word", "", (f"{verdict}:word_of",), lambda *given: "unexplained"),
-        Rule("validated", "", (f"{verdict}:is_borne_out",), lambda *given: True),
-        Rule("elsewhere", "", (f"{verdict}:rivals",), from_elsewhere),
+        Rule("validated", "", (f"{verdict}:is_validated",), lambda *given: True),
+        Rule("elsewhere", "", (f"{verdict}:refitted_alternatives",), from_elsewhere),
     )
     monkeypatch.setattr(price, "RULES", rules)
     said = list(price.prices([kept], "", simulate=False))
     assert said == [
         "sample: right: explained (base_tilt)",
-        "word: 1 right -> missed",
-        "    sample: explained (base_tilt) -> unexplained (base_tilt)",
-        "validated: 1 none",
-        "elsewhere: 1 need evaluations that were not made, 1 at first",
+        "    without word: unexplained (base_tilt)",
+        "    without elsewhere: needs 1 refits that were not made",
+        "word: 1 right -> missed (sample)",
+        "validated: 1 unchanged",
+        "elsewhere: 1 need refits, 1 at first (sample)",
     ]
 
 

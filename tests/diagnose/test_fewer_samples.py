@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose import left_over
-from ptp_symbolic.numeric.diagnose.floor import floor_of
-from ptp_symbolic.numeric.diagnose.left_over import (
+from ptp_symbolic.numeric.diagnose import noise_floor
+from ptp_symbolic.numeric.diagnose.noise_floor import (
     carried_noise,
     fitted_to_every_sample,
     is_thinned,
+    noise_floor_of,
     with_every_residual,
     with_fewer_samples,
 )
@@ -28,19 +28,19 @@ def slow() -> np.ndarray:
     return 9.0 * np.sin(2.0 * np.pi * 0.1 * seconds(10.0))
 
 
-def shaken() -> np.ndarray:
+def by_input_noise() -> np.ndarray:
     """A voltage [k] that changes from sample to sample: the current follows at once."""
     return slow() + 0.3 * np.sin(2.0 * np.pi * 33.0 * seconds(10.0))
 
 
 @pytest.fixture(scope="module")
 def task() -> Iterator[Task]:
-    first, second = make_runs(PanDrive(), [slow(), shaken()], 5).runs
+    first, second = make_runs(PanDrive(), [slow(), by_input_noise()], 5).runs
     coarse = replace(first, weight=first.weight * np.array([0.05, 1.0]))  # its current
     runs = (coarse, second)
     none: tuple[tuple[Run, ...], ...] = ()
     with ThreadPoolExecutor(2) as executor, pytest.MonkeyPatch.context() as patched:
-        patched.setattr(left_over, "SEARCH_PERIOD", 0.02)
+        patched.setattr(noise_floor, "SEARCH_PERIOD", 0.02)
         yield with_fewer_samples(
             Task(
                 MODEL,
@@ -94,5 +94,5 @@ def test_noise_is_judged_by_every_sample(task: Task, searched: Trial) -> None:
     here = carried_noise(task, searched.fit)
     assert np.array_equal(here.usual, same.usual)
     assert np.array_equal(here.most, same.most)
-    floor = floor_of(task, searched, same)
+    floor = noise_floor_of(task, searched, same)
     assert np.all(floor.noise < 1.2)

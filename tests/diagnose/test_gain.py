@@ -8,8 +8,13 @@ import pytest
 from scipy import special, stats
 from scipy.signal import lfilter
 
-from ptp_symbolic.numeric.diagnose.gain import Gain, compared, gain, gain_in_innovations
-from ptp_symbolic.numeric.diagnose.held_out import held_out_gain
+from ptp_symbolic.numeric.diagnose.gain import (
+    Gain,
+    compared,
+    gain,
+    gain_in_innovations,
+    held_out_gain,
+)
 from ptp_symbolic.numeric.diagnose.trial import TUNING, Trial
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.curves import Floats
@@ -40,9 +45,9 @@ def test_a_third_taken_from_every_block_is_a_third_beyond_doubt() -> None:
     smaller = np.random.default_rng(61).uniform(1.0, 9.0, 30)
     found = compared(smaller * 2.0 / 3.0, smaller)
     assert (found.share, found.lower, found.upper) == pytest.approx((1 / 3, 1 / 3, 1 / 3))
-    assert found.is_clear(10**6)
-    assert not compared(smaller, smaller * 2.0 / 3.0).is_clear(1)
-    assert not compared(smaller, smaller).is_clear(1)
+    assert found.is_significant(10**6)
+    assert not compared(smaller, smaller * 2.0 / 3.0).is_significant(1)
+    assert not compared(smaller, smaller).is_significant(1)
 
 
 def test_few_blocks_have_a_students_interval_and_one_has_none() -> None:
@@ -57,7 +62,7 @@ def test_few_blocks_have_a_students_interval_and_one_has_none() -> None:
     alone = compared(np.array([0.6]), np.array([1.0]))
     assert alone.share == pytest.approx(0.4)
     assert (alone.lower, alone.upper) == (-np.inf, np.inf)
-    assert not alone.is_clear(1)
+    assert not alone.is_significant(1)
 
 
 @pytest.mark.parametrize(("half_width", "is_most"), [(0.1, True), (1.5, False)])
@@ -93,8 +98,8 @@ def test_a_clear_gain_passes_a_one_sided_t_test_shared_among_all_tests(
 ) -> None:
     threshold = stats.t.isf(0.05 / tests, degrees)
     above, below = (Gain(0.1, 0.0, 0.2, f * threshold, degrees) for f in (1.0001, 0.9999))
-    assert above.is_clear(tests) and not below.is_clear(tests)
-    assert not Gain(-0.1, -0.2, 0.0, -2.0 * threshold, degrees).is_clear(tests)
+    assert above.is_significant(tests) and not below.is_significant(tests)
+    assert not Gain(-0.1, -0.2, 0.0, -2.0 * threshold, degrees).is_significant(tests)
 
 
 def gains(losses: Floats) -> list[Gain]:
@@ -108,15 +113,15 @@ def test_equally_good_models_are_hardly_ever_told_apart() -> None:
     """
     rng = np.random.default_rng(62)
     found = gains(1.0 + 0.1 * rng.standard_normal((400, 2, 12)))
-    assert sum(g.is_clear(40) for g in found) <= 2
-    assert 8 <= sum(g.is_clear(1) for g in found) <= 33
+    assert sum(g.is_significant(40) for g in found) <= 2
+    assert 8 <= sum(g.is_significant(1) for g in found) <= 33
 
 
 def test_a_false_gain_is_as_rare_where_blocks_differ_widely() -> None:
     """Losses of three degrees of freedom each: 15 of 300 draws, with a standard error of 3.8."""
     rng = np.random.default_rng(63)
     found = gains(rng.chisquare(3.0, (300, 2, 12)))
-    assert sum(g.is_clear(1) for g in found) <= 26
+    assert sum(g.is_significant(1) for g in found) <= 26
 
 
 def huber(square: Floats) -> Floats:
@@ -190,7 +195,7 @@ def test_a_parameter_that_fits_noise_alone_gains_nothing() -> None:
         clear.append(gain(larger, trial(list(noise))))
         assert larger.fit.cost < np.sum(noise**2)
     assert np.mean([g.share for g in clear]) < 0.0
-    assert sum(g.is_clear(1) for g in clear) <= 2
+    assert sum(g.is_significant(1) for g in clear) <= 2
 
 
 def test_a_signal_of_a_large_unit_does_not_outweigh_another() -> None:
@@ -252,5 +257,5 @@ def test_windows_of_one_log_that_gain_alike_count_together(pole: float) -> None:
         )
         runs = tuple(replace(r, source=f"log {k // 50}") for k, r in enumerate(after.runs))
         found = held_out_gain(replace(after, runs=runs), replace(before, runs=runs))
-        clear += found.is_clear(1)
+        clear += found.is_significant(1)
     assert clear / 150 < 0.11

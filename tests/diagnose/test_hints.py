@@ -7,7 +7,6 @@ import pytest
 from scipy.signal import lfilter
 
 from ptp_symbolic.numeric.data import log_files, read_logs
-from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
 from ptp_symbolic.numeric.diagnose.hints import (
     LOOKED,
     LogRows,
@@ -20,6 +19,7 @@ from ptp_symbolic.numeric.diagnose.hints import (
     resonance,
 )
 from ptp_symbolic.numeric.diagnose.proposals import propose
+from ptp_symbolic.numeric.diagnose.refits import fit_declared
 from ptp_symbolic.numeric.diagnose.remainder import change_of
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.preparation import model_of, task_for, workers

@@ -9,10 +9,9 @@ from scipy.integrate import solve_ivp
 
 from ptp_symbolic.numeric.data import Log
 from ptp_symbolic.numeric.diagnose import along_rows
-from ptp_symbolic.numeric.diagnose.along_rows import _Motion, grown_along_motion
-from ptp_symbolic.numeric.diagnose.confirm import breaks_its_law
-from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
-from ptp_symbolic.numeric.diagnose.proposals import propose, start_for
+from ptp_symbolic.numeric.diagnose.along_rows import _Motion, extended_along_motion
+from ptp_symbolic.numeric.diagnose.confirm import contradicts_its_law
+from ptp_symbolic.numeric.diagnose.proposals import declared_start, propose, start_for
 from ptp_symbolic.numeric.diagnose.trial import fitted
 from tests.diagnose.spring_table import (
     COUNT,
@@ -84,8 +83,8 @@ def test_a_spring_that_is_stronger_where_it_is_fast_is_none(
         assert abs(values["k1_cable_pan"]) > 0.2 * STIFFNESS
         assert proposals.space is not None
         law = (task, proposals.space, (found,), values, found)
-        assert breaks_its_law(*law) is breaks
-        assert breaks_its_law(*law, loosely=True) is mostly
+        assert contradicts_its_law(*law) is breaks
+        assert contradicts_its_law(*law, loosely=True) is mostly
 
 
 @pytest.mark.parametrize(
@@ -102,7 +101,7 @@ def test_what_broke_its_law_has_to_keep_it_along_the_motion(
     """Beside a second friction, drag makes up in the rows for a torque cubic in the rate."""
     with table_of(tmp_path, lambda seed: logged(hidden, seed)) as task:
         declared = fitted(task, (), declared_start(task), None)
-        grown = grown_along_motion(task, propose(task), declared, task.train, [key])
+        grown = extended_along_motion(task, propose(task), declared, task.train, [key])
         assert (key in grown.trial.keys if grown else False) is named
 
 
@@ -110,11 +109,11 @@ def test_the_law_is_asked_for_loosely_of_what_has_not_broken_it(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     """Here every spring breaks its law loosely, and none strictly."""
-    monkeypatch.setattr(along_rows, "breaks_its_law", lambda *_, loosely: loosely)
+    monkeypatch.setattr(along_rows, "contradicts_its_law", lambda *_, loosely: loosely)
     with table_of(tmp_path, lambda seed: logged(spring, seed)) as task:
         declared, found = fitted(task, (), declared_start(task), None), propose(task)
-        assert grown_along_motion(task, found, declared, task.train) is None
-        grown = grown_along_motion(task, found, declared, task.train, ["cable_spring@pan"])
+        assert extended_along_motion(task, found, declared, task.train) is None
+        grown = extended_along_motion(task, found, declared, task.train, ["cable_spring@pan"])
         assert grown is not None and grown.trial.keys == ("cable_spring@pan",)
 
 

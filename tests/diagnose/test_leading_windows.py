@@ -8,9 +8,9 @@ import pytest
 
 from ptp_symbolic.numeric.data import Log
 from ptp_symbolic.numeric.diagnose.preparation import task_of
+from ptp_symbolic.numeric.identify.blocks import MANY_RUNS
 from ptp_symbolic.numeric.identify.constants import FORGOTTEN, SHORT
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
-from ptp_symbolic.numeric.identify.robust_loss import MANY_RUNS
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from tests.identify.pan_runs import KNOWN, MODEL, PERIOD, PLATFORM, TRUTH

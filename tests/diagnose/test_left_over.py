@@ -10,10 +10,15 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from ptp_symbolic.numeric.diagnose import left_over as module
-from ptp_symbolic.numeric.diagnose.confirmed_sets import _examined
-from ptp_symbolic.numeric.diagnose.left_over import Carried, bound_of, carried_noise, left_over
-from ptp_symbolic.numeric.diagnose.seeker import Seeker
+from ptp_symbolic.numeric.diagnose import noise_floor as module
+from ptp_symbolic.numeric.diagnose.confirm import _examined
+from ptp_symbolic.numeric.diagnose.noise_floor import (
+    Carried,
+    bound_of,
+    carried_noise,
+    normalised_residual,
+)
+from ptp_symbolic.numeric.diagnose.stepwise import StepwiseSearch
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, TEST_ALARM
 from ptp_symbolic.numeric.identify.fit import Fit
@@ -47,7 +52,10 @@ def test_what_inputs_carry_is_the_noise_integrated_twice() -> None:
     """Of runs that a start follows, the drift beside a straight line is left."""
     found = carried(NOISE)
     paths = drifts(NOISE, 3000) / SIGMA
-    each = [left_over(finished(list(paths[:, k : k + RUNS].T)))[0] for k in range(0, 3000, RUNS)]
+    each = [
+        normalised_residual(finished(list(paths[:, k : k + RUNS].T)))[0]
+        for k in range(0, 3000, RUNS)
+    ]
     assert found.usual[0] == pytest.approx(np.median(each), rel=0.25)
     assert 0.85 < np.mean(each <= found.seldom[0]) <= 0.99
     assert 0.9 < np.mean(each <= found.most[0]) <= 1.0
@@ -63,8 +71,8 @@ def test_declared_noise_excuses_no_more_of_what_is_left_than_of_an_effect(
     """The trial itself carries it, whatever others did; what the samples show may be no noise."""
     fit = accelerated(RUNS)
     others = Carried(*[np.full(2, 0.1)] * 3)
-    seeker = cast(Any, SimpleNamespace(task=task_of(fit, *noise), carried=others, followed=None))
-    found = Seeker.excusing(seeker, Trial((), fit))
+    stepwise = cast(Any, SimpleNamespace(task=task_of(fit, *noise), carried=others, followed=None))
+    found = StepwiseSearch.input_noise_for(stepwise, Trial((), fit))
     assert found is others if not own else found.usual[0] == carried(NOISE).usual[0] > 1.0
 
 
@@ -94,13 +102,13 @@ def test_many_windows_count_without_the_worst_tenth_and_few_runs_by_their_mean()
     """
     wave = np.where(np.arange(40) % 2, 1.0, -1.0)
     many = [wave] * 21 + [50.0 * wave] * 2
-    assert left_over(finished(many)) == pytest.approx([1.0])
+    assert normalised_residual(finished(many)) == pytest.approx([1.0])
     moving = [wave] * 25 + [10.0 * wave] * 15
-    assert left_over(finished(moving)) == pytest.approx([np.sqrt(1125.0 / 36.0)])
-    assert left_over(finished([wave, 2.0 * wave])) == pytest.approx([np.sqrt(2.5)])
+    assert normalised_residual(finished(moving)) == pytest.approx([np.sqrt(1125.0 / 36.0)])
+    assert normalised_residual(finished([wave, 2.0 * wave])) == pytest.approx([np.sqrt(2.5)])
     failed = finished([wave])
     gone = replace(failed.evaluations[0], failed="stopped")
-    assert left_over(replace(failed, evaluations=(gone,))) == pytest.approx([np.inf])
+    assert normalised_residual(replace(failed, evaluations=(gone,))) == pytest.approx([np.inf])
 
 
 def test_a_replay_that_cannot_be_simulated_leaves_what_the_others_of_its_run_leave(
@@ -141,8 +149,8 @@ def test_an_amount_is_known_no_better_than_the_noise_of_the_inputs_allows(
     trial = Trial((), replace(fit, evaluations=tuple(noisy)))
     task = task_of(fit, noise, 0.0)
     task.white, task.declared_noise = True, frozenset()
-    seeker = cast(Any, SimpleNamespace(task=task, carried=Carried(*[np.zeros(2)] * 3)))
-    examined = _examined(seeker, trial)
+    stepwise = cast(Any, SimpleNamespace(task=task, carried=Carried(*[np.zeros(2)] * 3)))
+    examined = _examined(stepwise, trial)
     zero = {"J_pan": fit.values["J_pan"] * 1.05}
     assert (chance_of_zero(examined, zero) < FALSE_ALARM) is known
 
@@ -151,5 +159,5 @@ def test_a_fit_that_leaves_noise_alone_is_examined_without_replays() -> None:
     fit = accelerated(RUNS)
     task = task_of(fit, NOISE, 0.0)
     task.white, task.declared_noise = True, frozenset()
-    seeker = cast(Any, SimpleNamespace(task=task, carried=Carried(*[np.zeros(2)] * 3)))
-    assert _examined(seeker, Trial((), fit)).shaken == ()
+    stepwise = cast(Any, SimpleNamespace(task=task, carried=Carried(*[np.zeros(2)] * 3)))
+    assert _examined(stepwise, Trial((), fit)).by_input_noise == ()

@@ -12,8 +12,7 @@ from ptp_symbolic.numeric.diagnose import responses
 from ptp_symbolic.numeric.diagnose.candidates import Candidate, within_reach
 from ptp_symbolic.numeric.diagnose.confirm import is_amount_known
 from ptp_symbolic.numeric.diagnose.gain import p_value
-from ptp_symbolic.numeric.diagnose.linear import effect_of
-from ptp_symbolic.numeric.diagnose.responses import response_columns
+from ptp_symbolic.numeric.diagnose.responses import effect_of, response_columns
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.straight import finished, run_of

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.linalg import null_space, orth, subspace_angles
 
-from ptp_symbolic.numeric.diagnose.linear import (
+from ptp_symbolic.numeric.diagnose.responses import (
     canonical_correlation,
-    made_up_for,
+    compensated,
     projected_off,
 )
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
@@ -104,7 +104,7 @@ def a_moved_mass(offset: float, twin: float = 0.0):
 def test_an_inertia_makes_up_for_a_mass_that_is_put_back() -> None:
     """By the slope 2 m d, in kg m^2, and not by a power of e; the damping stays."""
     fit, table = a_moved_mass(0.2)
-    found = made_up_for(fit, {"d": 0.05}, ["J", "b", "b2"], table)
+    found = compensated(fit, {"d": 0.05}, ["J", "b", "b2"], table)
     assert found["J"] == pytest.approx(0.02 + 2.0 * MASS * 0.2 * 0.15)
     assert found["d"] == 0.05
     assert (found["b"], found["b2"]) == pytest.approx((0.3, 0.6))
@@ -112,9 +112,9 @@ def test_an_inertia_makes_up_for_a_mass_that_is_put_back() -> None:
 
 def test_nothing_makes_up_for_an_effect_beyond_its_bounds_or_where_all_is_held() -> None:
     fit, table = a_moved_mass(0.5)
-    assert made_up_for(fit, {"d": -0.5}, ["J", "b", "b2"], table)["J"] == INERTIA.upper
-    assert made_up_for(fit, {"d": -0.5}, ["b", "b2"], table)["J"] == 0.02
-    assert made_up_for(fit, {"d": -0.5}, [], table) == {"J": 0.02, "d": -0.5, "b": 0.3, "b2": 0.6}
+    assert compensated(fit, {"d": -0.5}, ["J", "b", "b2"], table)["J"] == INERTIA.upper
+    assert compensated(fit, {"d": -0.5}, ["b", "b2"], table)["J"] == 0.02
+    assert compensated(fit, {"d": -0.5}, [], table) == {"J": 0.02, "d": -0.5, "b": 0.3, "b2": 0.6}
 
 
 def test_what_the_logs_do_not_tell_apart_moves_together() -> None:
@@ -123,7 +123,7 @@ def test_what_the_logs_do_not_tell_apart_moves_together() -> None:
     """
     fit, table = a_moved_mass(0.2)
     table[:, 3] = 2.0 * table[:, 0]
-    found = made_up_for(fit, {"d": 0.05}, ["J", "b2"], table)
+    found = compensated(fit, {"d": 0.05}, ["J", "b2"], table)
     whole = 2.0 * MASS * 0.2 * 0.15
     assert found["J"] - 0.02 == pytest.approx(whole / 2.0)
     assert 0.04 * (found["b2"] - 0.6) / TWIN.scale == pytest.approx(whole / 2.0)
@@ -131,5 +131,5 @@ def test_what_the_logs_do_not_tell_apart_moves_together() -> None:
 
 def test_a_twin_takes_over_whole() -> None:
     fit, table = a_moved_mass(0.2, twin=0.5)
-    found = made_up_for(fit, {"b": 0.0}, ["J", "d", "b2"], table)
+    found = compensated(fit, {"b": 0.0}, ["J", "d", "b2"], table)
     assert found["b2"] == pytest.approx(0.6 + 0.3 / 0.5)

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.regression import regression
-from ptp_symbolic.numeric.diagnose.search import _place
+from ptp_symbolic.numeric.diagnose.regression import lines, regression
+from ptp_symbolic.numeric.diagnose.responses import _place
 from ptp_symbolic.numeric.diagnose.signatures import Signature, _strongest
-from ptp_symbolic.numeric.diagnose.subsets import lines
 from ptp_symbolic.numeric.identify.constants import CYCLES_APART, LEAST_CYCLES
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.curves import Floats

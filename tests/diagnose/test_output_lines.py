@@ -8,11 +8,11 @@ from scipy.integrate import solve_ivp
 
 from ptp_symbolic.numeric.data import Log
 from ptp_symbolic.numeric.diagnose import search as roads
-from ptp_symbolic.numeric.diagnose.declared_fit import over_whole_runs
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise
+from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
-from ptp_symbolic.numeric.diagnose.search import at_lines_of_outputs
-from ptp_symbolic.numeric.diagnose.seeker import Seeker
+from ptp_symbolic.numeric.diagnose.refits import over_whole_runs
+from ptp_symbolic.numeric.diagnose.responses import at_lines_of_outputs
+from ptp_symbolic.numeric.diagnose.stepwise import StepwiseSearch
 from ptp_symbolic.numeric.identify.constants import CYCLES_APART
 from tests.diagnose.spring_table import (
     COUNT,
@@ -29,7 +29,7 @@ SHAKES = 1.7  # Hz
 SPAN = PERIOD * SAMPLES
 
 
-def shaken(seed: int) -> Log:
+def by_input_noise(seed: int) -> Log:
     """A table with a payload 0.1 m off its axis, on a base that accelerates by 0.5 m/s^2."""
     rng = np.random.default_rng(seed)
     torque = np.repeat(rng.uniform(-0.5, 0.5, SAMPLES // 50), 50)
@@ -49,7 +49,7 @@ def shaken(seed: int) -> Log:
 
 
 def test_a_base_that_shakes_is_found_at_its_frequency(tmp_path: Path) -> None:
-    with table_of(tmp_path, shaken) as task:
+    with table_of(tmp_path, by_input_noise) as task:
         proposals = propose(task)
         task, declared = over_whole_runs(task, proposals)
         found = at_lines_of_outputs(task, proposals.space, declared, proposals.waves)
@@ -70,13 +70,15 @@ def test_gusts_draw_no_line(tmp_path: Path) -> None:
 
 def test_a_search_goes_on_at_the_lines_of_the_outputs(tmp_path: Path) -> None:
     """Where the rows show none, as if the machine had rested: the base is found with them alone."""
-    with table_of(tmp_path, shaken) as task:
+    with table_of(tmp_path, by_input_noise) as task:
         proposals = propose(task)
         blind = tuple(c for c in task.candidates if c.locked is None)
         task, declared = over_whole_runs(task, proposals)
-        seeker = Seeker(task, declared, proposals, carried_noise(task, declared.fit)).among(blind)
+        stepwise = StepwiseSearch(
+            task, declared, proposals, carried_noise(task, declared.fit)
+        ).among(blind)
 
-        lined, found = roads._with_lines(seeker, [], roads._proposed)
-        assert any("base_motion" in t.keys and lined.is_at_noise(t) for t in found)
+        lined, found = roads._with_lines(stepwise, [], roads._proposed)
+        assert any("base_motion" in t.keys and lined.is_white(t) for t in found)
         quiet = roads._with_lines(lined, found, lambda _: pytest.fail("looked for again"))
     assert quiet == (lined, found)

@@ -7,19 +7,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose.declared_fit import _led_back, beside_declared, declared_from
-from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
-from ptp_symbolic.numeric.diagnose.left_over import Carried
+from ptp_symbolic.numeric.diagnose.noise_floor import Carried, leaves_white_noise
 from ptp_symbolic.numeric.diagnose.refits import (
-    _with_strays_begun_anew,
-    is_near_floor,
-    started_anew,
-    strayed_from_start,
+    _back_in_range,
+    _with_windows_restarted,
+    beside_declared,
+    declared_from,
+    is_near_noise_floor,
+    outside_prior_range,
+    restarted_fit,
 )
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted
 from ptp_symbolic.numeric.identify.constants import SHORT
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
-from ptp_symbolic.numeric.identify.run_starts import linked
+from ptp_symbolic.numeric.identify.fit import linked
 from ptp_symbolic.numeric.identify.windows import split_run
 from tests.identify.pan_runs import COUNT, FLOOR, KNOWN, MODEL, THREE, TRUTH, make_runs
 from tests.independent.pan_drive import PanDrive
@@ -65,14 +66,14 @@ def test_parameters_further_off_than_a_start_may_be_have_strayed(
     task: Task, inertia: float, damping: float, expected: list[str]
 ) -> None:
     """Four times either way: 0.0125 to 0.2 kg m^2 and 0.25 to 4 N m s/rad."""
-    found = strayed_from_start(task, {"J_pan": inertia, "d_shaft_pan": damping})
+    found = outside_prior_range(task, {"J_pan": inertia, "d_shaft_pan": damping})
     assert [f.name for f in found] == expected
 
 
 def test_a_fit_whose_parameters_strayed_is_led_back(task: Task) -> None:
     stuck = fitted(task, (), {**task.fixed, "J_pan": 1e-3, "d_shaft_pan": 0.0}, None)
     assert not leaves_white_noise(stuck, NOTHING_CARRIED)
-    found = started_anew(task, stuck, NOTHING_CARRIED)
+    found = restarted_fit(task, stuck, NOTHING_CARRIED)
     assert leaves_white_noise(found, NOTHING_CARRIED)
     for name in NAMES:
         assert found.values[name] == pytest.approx(TRUTH[name], rel=0.1)
@@ -81,20 +82,20 @@ def test_a_fit_whose_parameters_strayed_is_led_back(task: Task) -> None:
 def test_a_declared_model_that_strayed_is_led_back_before_its_end_is_believed(task: Task) -> None:
     """Nothing else is tried where nothing has strayed, and nothing is gained by the way back."""
     strayed = fitted(task, (), {**task.fixed, "J_pan": 1e-3, "d_shaft_pan": 0.0}, None)
-    assert not is_near_floor(strayed)
-    assert leaves_white_noise(_led_back(task, strayed), NOTHING_CARRIED)
-    assert _led_back(replace(task, material=1.0), strayed) is strayed
+    assert not is_near_noise_floor(strayed)
+    assert leaves_white_noise(_back_in_range(task, strayed), NOTHING_CARRIED)
+    assert _back_in_range(replace(task, material=1.0), strayed) is strayed
     wrong = fitted(task, (), {**task.fixed, "J_pan": 0.19}, None)
-    assert not is_near_floor(wrong)
-    assert _led_back(task, wrong) is wrong
+    assert not is_near_noise_floor(wrong)
+    assert _back_in_range(task, wrong) is wrong
     failed = replace(strayed, fit=replace(strayed.fit, failed="not finite", cost=np.inf))
-    assert leaves_white_noise(_led_back(replace(task, material=1.0), failed), NOTHING_CARRIED)
+    assert leaves_white_noise(_back_in_range(replace(task, material=1.0), failed), NOTHING_CARRIED)
 
 
 def test_a_trial_that_leaves_noise_alone_stays(task: Task) -> None:
     at_truth: Trial = fitted(task, (), task.fixed, None, 12)
     assert leaves_white_noise(at_truth, NOTHING_CARRIED)
-    assert started_anew(task, at_truth, NOTHING_CARRIED) is at_truth
+    assert restarted_fit(task, at_truth, NOTHING_CARRIED) is at_truth
 
 
 def test_a_declared_model_that_was_stuck_goes_where_a_set_leads_it(task: Task) -> None:
@@ -124,10 +125,10 @@ def test_a_window_that_went_astray_is_begun_where_the_one_before_ends(task: Task
     astray[second][1] += 0.2
     wrong = fitted(cut, (), right.values, astray)
     assert np.max(_rms(wrong)) > 5.0 * np.median(_rms(wrong))
-    found = _with_strays_begun_anew(cut, wrong)
+    found = _with_windows_restarted(cut, wrong)
     assert np.max(_rms(found)) < 1.5 * np.median(_rms(found))
-    assert _with_strays_begun_anew(cut, found) is found
-    assert _with_strays_begun_anew(task, wrong) is wrong
+    assert _with_windows_restarted(cut, found) is found
+    assert _with_windows_restarted(task, wrong) is wrong
 
 
 def _rms(trial: Trial) -> list[float]:

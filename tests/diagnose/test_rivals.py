@@ -4,10 +4,14 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.floor import Floor
 from ptp_symbolic.numeric.diagnose.gain import gain
-from ptp_symbolic.numeric.diagnose.groups import Rival, _comes_near, overtaking, unrefuted
-from ptp_symbolic.numeric.diagnose.left_over import Carried
+from ptp_symbolic.numeric.diagnose.groups import (
+    Alternative,
+    _comes_near,
+    better_alternative,
+    not_refuted,
+)
+from ptp_symbolic.numeric.diagnose.noise_floor import Carried, NoiseFloor
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from tests.identify.straight import finished
 
@@ -23,7 +27,9 @@ def trial(size: float, *keys: str) -> Trial:
 def overtaken_by(*sizes: float, material: float = 0.1) -> Trial | None:
     chosen = trial(1.0)
     others = [trial(size) for size in sizes]
-    return overtaking(chosen, [Rival(other, gain(chosen, other)) for other in others], material)
+    return better_alternative(
+        chosen, [Alternative(other, gain(chosen, other)) for other in others], material
+    )
 
 
 @pytest.mark.parametrize("size", [1.4, 1.0, 0.96])
@@ -44,15 +50,15 @@ def test_the_best_of_those_that_predict_better_takes_the_place() -> None:
     assert found.fit.cost == trial(0.5).fit.cost
 
 
-@pytest.mark.parametrize(("rivals", "is_clear"), [(1, True), (20, False)])
-def test_among_many_rivals_a_gain_must_be_clearer(rivals: int, is_clear: bool) -> None:
+@pytest.mark.parametrize(("rivals", "is_significant"), [(1, True), (20, False)])
+def test_among_many_rivals_a_gain_must_be_clearer(rivals: int, is_significant: bool) -> None:
     """Half of one run in four improves to nothing: 1.75 standard errors, p = 0.048."""
     chosen = trial(1.0)
     residuals = [noise.copy() for noise in NOISE]
     residuals[2][:300] = 0.0
     other = Trial((), finished(residuals))
-    found = overtaking(chosen, [Rival(other, gain(chosen, other))] * rivals, 0.1)
-    assert found is (other if is_clear else None)
+    found = better_alternative(chosen, [Alternative(other, gain(chosen, other))] * rivals, 0.1)
+    assert found is (other if is_significant else None)
 
 
 @pytest.mark.parametrize(
@@ -78,8 +84,8 @@ def test_what_noise_of_the_inputs_leaves_refutes_no_rival(carried: float, kept: 
     """
     chosen = trial(1.0)
     others = [trial(size, key) for size, key in ((1.01, "a"), (1.8, "b"), (2.5, "c"))]
-    found = [Rival(other, gain(chosen, other)) for other in others]
-    floor = Floor(np.ones(1), np.ones(1), Carried(*[np.array([carried])] * 3))
-    left = unrefuted(found, floor, 0.1)
+    found = [Alternative(other, gain(chosen, other)) for other in others]
+    floor = NoiseFloor(np.ones(1), np.ones(1), Carried(*[np.array([carried])] * 3))
+    left = not_refuted(found, floor, 0.1)
     assert [r.trial.keys for r in left] == [(key,) for key in kept]
-    assert [r.excused for r in left] == [False, True][: len(kept)]
+    assert [r.is_within_input_noise for r in left] == [False, True][: len(kept)]

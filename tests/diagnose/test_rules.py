@@ -8,8 +8,8 @@ import pytest
 from ptp_symbolic.numeric.diagnose import verdict
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.confirm import why_unconfirmed
-from ptp_symbolic.numeric.diagnose.findings import is_earned
 from ptp_symbolic.numeric.diagnose.gain import Gain
+from ptp_symbolic.numeric.diagnose.stepwise import is_earned
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from ptp_symbolic.workflows.rules import RULES, Rule, switched_off, table
 from tests.identify.straight import finished
@@ -48,9 +48,9 @@ def test_an_effect_at_its_bound_is_named_without_that_rule() -> None:
 
 def test_what_validation_runs_deny_is_borne_out_without_that_rule() -> None:
     worse = Gain(-0.5, -0.6, -0.4, -10.0, 20)
-    assert not verdict.is_borne_out(worse, True, False, 0.1)
+    assert not verdict.is_validated(worse, True, False, 0.1)
     with switched_off(BY_NAME["validated"]):
-        assert verdict.is_borne_out(worse, True, False, 0.1)
+        assert verdict.is_validated(worse, True, False, 0.1)
 
 
 def test_chance_alone_earns_a_place_without_significance() -> None:

@@ -4,9 +4,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
-from ptp_symbolic.numeric.diagnose.proposals import propose
-from ptp_symbolic.numeric.diagnose.seeker import screened
+from ptp_symbolic.numeric.diagnose.proposals import declared_start, propose
+from ptp_symbolic.numeric.diagnose.stepwise import screened
 from ptp_symbolic.numeric.diagnose.trial import Task
 from ptp_symbolic.numeric.identify.constants import TRIED
 from tests.diagnose.spring_table import INERTIA, PAYLOAD, STIFFNESS, spring_table

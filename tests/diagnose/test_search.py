@@ -8,123 +8,124 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose.declared_fit import declared_from, fit_declared
-from ptp_symbolic.numeric.diagnose.findings import worth_keeping
 from ptp_symbolic.numeric.diagnose.gain import gain
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise
+from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
+from ptp_symbolic.numeric.diagnose.refits import declared_from, fit_declared, taken_over
 from ptp_symbolic.numeric.diagnose.search import by_effects_alone, extended
-from ptp_symbolic.numeric.diagnose.seeker import Seeker, simplified
-from ptp_symbolic.numeric.diagnose.starts import taken_over
+from ptp_symbolic.numeric.diagnose.stepwise import StepwiseSearch, best_of_each_set, simplified
 from ptp_symbolic.numeric.diagnose.trial import Trial, fitted
 from ptp_symbolic.numeric.identify.constants import MOST
 from tests.diagnose.spring_table import DAMPING, INERTIA, MASS, PAYLOAD, STIFFNESS, spring_table
 
 
 @pytest.fixture(scope="module")
-def seeker(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Seeker]:
+def stepwise(tmp_path_factory: pytest.TempPathFactory) -> Iterator[StepwiseSearch]:
     with spring_table(tmp_path_factory.mktemp("table")) as task:
         proposals = propose(task)
         task, declared = fit_declared(task, proposals)
-        yield Seeker(task, declared, proposals, carried_noise(task, declared.fit))
+        yield StepwiseSearch(task, declared, proposals, carried_noise(task, declared.fit))
 
 
-def trial(seeker: Seeker, *keys: str) -> Trial:
+def trial(stepwise: StepwiseSearch, *keys: str) -> Trial:
     """These candidates fitted to their end, each in its fullest form."""
-    task = seeker.task
+    task = stepwise.task
     full = {c.key: c for c in sorted(task.candidates, key=lambda c: len(c.free))}
     chosen = tuple(full[key] for key in keys)
     amounts = {f.name: f.start for c in chosen for f in c.free}
     shapes = {name: value for c in chosen for name, value in c.shapes[0].items()}
-    start = seeker.declared.values | amounts | shapes
-    return seeker.polished(fitted(task, chosen, start, None))
+    start = stepwise.declared.values | amounts | shapes
+    return stepwise.polished(fitted(task, chosen, start, None))
 
 
 def test_a_declared_value_that_leaves_more_than_noise_gives_way_to_the_spring(
-    seeker: Seeker,
+    stepwise: StepwiseSearch,
 ) -> None:
-    wrong = trial(seeker, "declared_value:c_x_payload")
-    assert not seeker.is_at_noise(wrong)
-    found, steps = by_effects_alone(seeker, wrong, [])
+    wrong = trial(stepwise, "declared_value:c_x_payload")
+    assert not stepwise.is_white(wrong)
+    found, steps = by_effects_alone(stepwise, wrong, [])
     assert found.keys == ("cable_spring@pan",)
     assert found.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
     assert [s.candidate.key for s in steps] == ["cable_spring@pan"]
 
 
-def test_a_declared_value_beside_the_spring_is_taken_out(seeker: Seeker) -> None:
+def test_a_declared_value_beside_the_spring_is_taken_out(stepwise: StepwiseSearch) -> None:
     """Both leave noise alone: the set with fewer parameters is the answer."""
-    larger = trial(seeker, "cable_spring@pan", "declared_value:c_x_payload")
-    assert seeker.is_at_noise(larger)
-    found, _ = by_effects_alone(seeker, larger, [])
+    larger = trial(stepwise, "cable_spring@pan", "declared_value:c_x_payload")
+    assert stepwise.is_white(larger)
+    found, _ = by_effects_alone(stepwise, larger, [])
     assert found.keys == ("cable_spring@pan",)
 
 
 def test_declared_values_that_make_up_for_each_other_are_taken_out_together(
-    seeker: Seeker,
+    stepwise: StepwiseSearch,
 ) -> None:
     """None of two that make up for each other can be done without alone."""
     declared = ("declared_value:c_x_payload", "declared_value:m_payload")
-    larger = trial(seeker, "cable_spring@pan", *declared)
-    assert seeker.is_at_noise(larger)
-    found, _ = by_effects_alone(seeker, larger, [])
+    larger = trial(stepwise, "cable_spring@pan", *declared)
+    assert stepwise.is_white(larger)
+    found, _ = by_effects_alone(stepwise, larger, [])
     assert found.keys == ("cable_spring@pan",)
 
 
-def test_effects_that_leave_noise_alone_are_not_searched_again(seeker: Seeker) -> None:
-    alone = trial(seeker, "cable_spring@pan")
-    assert seeker.is_at_noise(alone)
-    found, _ = by_effects_alone(seeker, alone, [])
+def test_effects_that_leave_noise_alone_are_not_searched_again(stepwise: StepwiseSearch) -> None:
+    alone = trial(stepwise, "cable_spring@pan")
+    assert stepwise.is_white(alone)
+    found, _ = by_effects_alone(stepwise, alone, [])
     assert found is alone
 
 
-def test_a_better_place_that_a_third_candidate_shows_is_kept(seeker: Seeker) -> None:
+def test_a_better_place_that_a_third_candidate_shows_is_kept(stepwise: StepwiseSearch) -> None:
     """The spring at half its stiffness, as a fit may end in a valley: another candidate leads out
     of it, is taken out again, and what it led to stays.
     """
-    task = seeker.task
-    full = trial(seeker, "cable_spring@pan")
+    task = stepwise.task
+    full = trial(stepwise, "cable_spring@pan")
     valley = full.values | {"k1_cable_pan": 0.5 * STIFFNESS}
     poor = fitted(task, full.candidates, valley, full.fit.z, 0)
-    assert not seeker.is_at_noise(poor)
-    found, _ = extended(seeker, poor, [])
+    assert not stepwise.is_white(poor)
+    found, _ = extended(stepwise, poor, [])
     assert found.keys == poor.keys
     assert found.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
 
 
-def test_a_spring_without_a_cubic_part_is_found_as_a_linear_one(seeker: Seeker) -> None:
-    (found,) = simplified(seeker, trial(seeker, "cable_spring@pan")).candidates
+def test_a_spring_without_a_cubic_part_is_found_as_a_linear_one(stepwise: StepwiseSearch) -> None:
+    (found,) = simplified(stepwise, trial(stepwise, "cable_spring@pan")).candidates
     assert [f.name for f in found.free] == ["k1_cable_pan", "theta0_cable_pan"]
 
 
 def test_a_spring_in_a_poor_place_finds_its_own_without_a_wrong_declared_value(
-    seeker: Seeker,
+    stepwise: StepwiseSearch,
 ) -> None:
     """Half of the stiffness beside a centre of mass that makes up for a part of the rest."""
-    wrong, right = trial(seeker, "declared_value:c_x_payload"), trial(seeker, "cable_spring@pan")
+    wrong, right = (
+        trial(stepwise, "declared_value:c_x_payload"),
+        trial(stepwise, "cable_spring@pan"),
+    )
     half = right.values | {"k1_cable_pan": 0.5 * STIFFNESS}
-    both = fitted(seeker.task, [*wrong.candidates, *right.candidates], half, right.fit.z)
-    left = seeker.without(both, wrong.candidates[0])
+    both = fitted(stepwise.task, [*wrong.candidates, *right.candidates], half, right.fit.z)
+    left = stepwise.without(both, wrong.candidates[0])
     assert left.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
 
 
 @pytest.mark.parametrize(("part", "open_yet"), [(0.01, False), (0.96, True), (1.0, False)])
 def test_what_a_fit_short_of_its_end_leaves_decides_nothing(
-    seeker: Seeker, part: float, open_yet: bool
+    stepwise: StepwiseSearch, part: float, open_yet: bool
 ) -> None:
     """A spring of part of the stiffness: of a hundredth of it no fit to the end is asked, for that
     leaves nearly all; with 96 % the rest may be the fit's; at its end nothing is gained.
     """
-    right = trial(seeker, "cable_spring@pan")
+    right = trial(stepwise, "cable_spring@pan")
     values = right.values | {"k1_cable_pan": part * right.values["k1_cable_pan"]}
-    smaller = fitted(seeker.task, right.candidates, values, right.fit.z)
+    smaller = fitted(stepwise.task, right.candidates, values, right.fit.z)
     assert gain(right, smaller).share >= (MOST if part < 1.0 else 0.0)
-    assert seeker.is_decided_at_end_of(smaller, right) is open_yet
+    assert stepwise.is_decided_at_end_of(smaller, right) is open_yet
 
 
-def test_what_stays_takes_over_what_the_others_did(seeker: Seeker) -> None:
+def test_what_stays_takes_over_what_the_others_did(stepwise: StepwiseSearch) -> None:
     """Half of the spring told as a base that leans: without it the spring begins whole."""
-    task = seeker.task
-    both = trial(seeker, "cable_spring@pan", "base_tilt")
+    task = stepwise.task
+    both = trial(stepwise, "cable_spring@pan", "base_tilt")
     values = both.values | {"k1_cable_pan": 0.5 * STIFFNESS, "beta_base": 0.2}
     halved = fitted(task, both.candidates, values, both.fit.z)
     as_it_is, led = taken_over(task, halved.candidates[:1], halved)
@@ -152,20 +153,22 @@ def test_a_stuck_inertia_takes_over_what_a_moved_payload_made_up_for(tmp_path: P
         assert found.values["J_pan"] == pytest.approx(INERTIA - PAYLOAD, rel=1e-3)
 
 
-def test_forward_selection_meets_the_set_that_another_road_ended_with(seeker: Seeker) -> None:
-    end = trial(seeker, "cable_spring@pan")
-    found, steps = extended(seeker, seeker.declared, [], end)
+def test_forward_selection_meets_the_set_that_another_road_ended_with(
+    stepwise: StepwiseSearch,
+) -> None:
+    end = trial(stepwise, "cable_spring@pan")
+    found, steps = extended(stepwise, stepwise.declared, [], end)
     assert found.keys == ("cable_spring@pan",)
     assert [s.candidate.key for s in steps] == ["cable_spring@pan"]
 
 
-def test_poor_fits_of_one_set_are_led_to_one_place(seeker: Seeker) -> None:
+def test_poor_fits_of_one_set_are_led_to_one_place(stepwise: StepwiseSearch) -> None:
     """A spring at half its stiffness is led to its place; another at a third takes that end."""
-    full = trial(seeker, "cable_spring@pan")
-    fresh = Seeker(seeker.task, seeker.declared, seeker.proposals, seeker.carried)
+    full = trial(stepwise, "cable_spring@pan")
+    fresh = StepwiseSearch(stepwise.task, stepwise.declared, stepwise.proposals, stepwise.carried)
     first, second = (
         fresh.restarted(
-            fitted(seeker.task, full.candidates, full.values | {"k1_cable_pan": k}, full.fit.z)
+            fitted(stepwise.task, full.candidates, full.values | {"k1_cable_pan": k}, full.fit.z)
         )
         for k in (0.5 * STIFFNESS, 0.3 * STIFFNESS)
     )
@@ -174,28 +177,28 @@ def test_poor_fits_of_one_set_are_led_to_one_place(seeker: Seeker) -> None:
 
 
 def test_trials_far_behind_are_kept_with_half_the_memory_and_gain_what_they_gained(
-    seeker: Seeker,
+    stepwise: StepwiseSearch,
 ) -> None:
     """Of a set twice the better stays; a spring of a tenth of the stiffness is far behind."""
-    best, far = trial(seeker, "cable_spring@pan"), trial(seeker, "constant_torque@pan")
+    best, far = trial(stepwise, "cable_spring@pan"), trial(stepwise, "constant_torque@pan")
     weak = best.values | {"k1_cable_pan": 0.1 * STIFFNESS}
-    poor = fitted(seeker.task, best.candidates, weak, best.fit.z)
-    kept = worth_keeping([poor, far, best], best)
+    poor = fitted(stepwise.task, best.candidates, weak, best.fit.z)
+    kept = best_of_each_set([poor, far, best], best)
     assert kept[0] is best and [t.keys for t in kept] == [best.keys, far.keys]
     sizes = [sum(e.by_parameter.nbytes for e in t.fit.evaluations) for t in (far, kept[1])]
     assert sizes[1] == 0.5 * sizes[0]
-    before, after = (gain(t, seeker.declared) for t in (far, kept[1]))
+    before, after = (gain(t, stepwise.declared) for t in (far, kept[1]))
     assert after.share == pytest.approx(before.share, abs=1e-4)
-    assert worth_keeping(kept, best) == kept
+    assert best_of_each_set(kept, best) == kept
 
 
 def test_what_a_trial_far_behind_gains_is_told_where_its_columns_hardly_differ(
-    seeker: Seeker,
+    stepwise: StepwiseSearch,
 ) -> None:
     """The last column is a sum of the others: products of them rounded to single precision belong
     to no matrix of information, most of twenty times.
     """
-    far = trial(seeker, "constant_torque@pan")
+    far = trial(stepwise, "constant_torque@pan")
     for seed in range(20):
         rng = np.random.default_rng(seed)
         steep = 1e9  # so that no prior keeps parameters in place
@@ -203,7 +206,7 @@ def test_what_a_trial_far_behind_gains_is_told_where_its_columns_hardly_differ(
         for table in tables:
             table[:, -1] = table[:, :-1].sum(axis=1)
         before, after = (
-            gain(replace(far, fit=replace(far.fit, evaluations=alike)), seeker.declared)
+            gain(replace(far, fit=replace(far.fit, evaluations=alike)), stepwise.declared)
             for alike in (
                 [
                     replace(e, by_parameter=t.astype(kind), by_start=e.by_start.astype(kind))

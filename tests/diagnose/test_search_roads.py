@@ -10,28 +10,26 @@ import pytest
 
 from ptp_symbolic.numeric.diagnose import search as roads
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.declared_fit import over_whole_runs
-from ptp_symbolic.numeric.diagnose.findings import Step
 from ptp_symbolic.numeric.diagnose.gain import gain
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise
-from ptp_symbolic.numeric.diagnose.proposals import Proposal, propose, start_for
-from ptp_symbolic.numeric.diagnose.refits import is_near_floor
+from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise
+from ptp_symbolic.numeric.diagnose.proposals import ProposedSet, propose, start_for
+from ptp_symbolic.numeric.diagnose.refits import is_near_noise_floor, over_whole_runs
 from ptp_symbolic.numeric.diagnose.search import floated
-from ptp_symbolic.numeric.diagnose.seeker import Seeker
+from ptp_symbolic.numeric.diagnose.stepwise import Step, StepwiseSearch
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted
 from ptp_symbolic.numeric.identify.constants import TRIED
-from ptp_symbolic.numeric.identify.work import Allowance
+from ptp_symbolic.numeric.identify.evidence import Allowance
 from tests.diagnose.spring_table import STIFFNESS, spring_table
 
 STUCK = 1.0002
 
 
 @pytest.fixture
-def seeker(tmp_path: Path) -> Iterator[Seeker]:
+def stepwise(tmp_path: Path) -> Iterator[StepwiseSearch]:
     with spring_table(tmp_path) as task:
         proposals = propose(task)
         task, declared = over_whole_runs(task, proposals)
-        yield Seeker(task, declared, proposals, carried_noise(task, declared.fit))
+        yield StepwiseSearch(task, declared, proposals, carried_noise(task, declared.fit))
 
 
 def test_what_leaves_only_noise_is_found_without_windows(
@@ -41,7 +39,7 @@ def test_what_leaves_only_noise_is_found_without_windows(
         found = roads.search(task)
     assert found.chosen.keys == ("cable_spring@pan",)
     assert found.chosen.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
-    assert not found.is_led and not found.is_cut_short
+    assert not found.is_over_windows and not found.is_cut_short
 
 
 @pytest.mark.long
@@ -49,7 +47,7 @@ def test_a_spring_is_found_over_windows_where_no_set_leaves_only_noise(tmp_path:
     """Gusts that no log holds, of a tenth of a second."""
     with spring_table(tmp_path, gust=0.05, lasting=10) as task:
         found = roads.search(task)
-    assert found.is_led
+    assert found.is_over_windows
     assert "cable_spring@pan" in found.chosen.keys
 
 
@@ -59,20 +57,20 @@ def test_a_search_whose_time_is_over_ends_with_what_the_rows_proposed(
     """Gusts hide the spring, so that a search with time goes on over windows."""
     with spring_table(tmp_path, gust=0.05, lasting=10) as task:
         found = roads.search(replace(task, allowance=Allowance(seconds=1e-3)))
-    assert found.is_cut_short and not found.is_led
+    assert found.is_cut_short and not found.is_over_windows
     assert found.chosen.keys == ("cable_spring@pan",)
     assert not found.task.is_over  # the verdict takes what time it needs
 
 
-def test_moves_of_a_search_whose_time_is_over_begin_nothing(seeker: Seeker) -> None:
+def test_moves_of_a_search_whose_time_is_over_begin_nothing(stepwise: StepwiseSearch) -> None:
     """A torque instead of the spring, which every move would better."""
-    torque = alone(seeker, "constant_torque@pan")
-    moves = [seeker.grown(torque), seeker.exchanged(torque)]
-    assert not seeker.task.is_over and any(moves)
-    seeker.task = replace(seeker.task, allowance=Allowance(seconds=-1.0))
-    assert seeker.task.is_over
-    assert seeker.grown(torque) is None and seeker.exchanged(torque) is None
-    assert seeker.restarted(torque) is torque and not seeker.unseen(torque)
+    torque = alone(stepwise, "constant_torque@pan")
+    moves = [stepwise.grown(torque), stepwise.exchanged(torque)]
+    assert not stepwise.task.is_over and any(moves)
+    stepwise.task = replace(stepwise.task, allowance=Allowance(seconds=-1.0))
+    assert stepwise.task.is_over
+    assert stepwise.grown(torque) is None and stepwise.exchanged(torque) is None
+    assert stepwise.restarted(torque) is torque and not stepwise.without_influence(torque)
 
 
 def full_form(task: Task, key: str) -> Candidate:
@@ -80,83 +78,85 @@ def full_form(task: Task, key: str) -> Candidate:
     return max((c for c in task.candidates if c.key == key), key=lambda c: len(c.free))
 
 
-def proposing(seeker: Seeker, first: str, then: str) -> Seeker:
+def proposing(stepwise: StepwiseSearch, first: str, then: str) -> StepwiseSearch:
     """The seeker whose rows propose one candidate first, and another one next."""
     sets = [
-        (Proposal((one,), start_for(seeker.task, seeker.proposals, (one,), {})),)
-        for one in (full_form(seeker.task, key) for key in (first, then))
+        (ProposedSet((one,), start_for(stepwise.task, stepwise.proposals, (one,), {})),)
+        for one in (full_form(stepwise.task, key) for key in (first, then))
     ]
-    seeker.proposals = replace(seeker.proposals, sets=sets[0], further=lambda: sets[1])
-    return seeker
+    stepwise.proposals = replace(stepwise.proposals, sets=sets[0], further=lambda: sets[1])
+    return stepwise
 
 
 def test_sets_that_the_rows_put_next_are_tried_where_the_first_leave_more_than_noise(
-    seeker: Seeker,
+    stepwise: StepwiseSearch,
 ) -> None:
     """Rows that a gap spoils put the right set behind others; here a torque before the spring."""
-    found = roads._proposed(proposing(seeker, "constant_torque@pan", "cable_spring@pan"))
+    found = roads._proposed(proposing(stepwise, "constant_torque@pan", "cable_spring@pan"))
     assert found[-1].keys == ("cable_spring@pan",)
-    assert seeker.is_at_noise(found[-1])
+    assert stepwise.is_white(found[-1])
     assert found[-1].values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
 
 
-def test_no_further_sets_are_tried_where_one_leaves_only_noise(seeker: Seeker) -> None:
-    seeker = proposing(seeker, "cable_spring@pan", "constant_torque@pan")
+def test_no_further_sets_are_tried_where_one_leaves_only_noise(stepwise: StepwiseSearch) -> None:
+    stepwise = proposing(stepwise, "cable_spring@pan", "constant_torque@pan")
     tried: list[str] = []
-    seeker.proposals = replace(seeker.proposals, further=lambda: tried.append("further") or ())
-    (found,) = roads._proposed(seeker)
+    stepwise.proposals = replace(stepwise.proposals, further=lambda: tried.append("further") or ())
+    (found,) = roads._proposed(stepwise)
     assert found.keys == ("cable_spring@pan",)
     assert not tried
 
 
-def test_the_rows_put_other_sets_next_than_first(seeker: Seeker) -> None:
+def test_the_rows_put_other_sets_next_than_first(stepwise: StepwiseSearch) -> None:
     first, then = (
         [frozenset(c.key for c in p.candidates) for p in sets]
-        for sets in (seeker.proposals.sets, seeker.proposals.further())
+        for sets in (stepwise.proposals.sets, stepwise.proposals.further())
     )
     assert first and then and all(then)
     assert len(then) == len(set(then)) <= 4 * TRIED
     assert not set(first) & set(then)
 
 
-def test_a_set_near_the_floor_is_led_to_its_end(seeker: Seeker) -> None:
+def test_a_set_near_the_floor_is_led_to_its_end(stepwise: StepwiseSearch) -> None:
     """A spring 2e-4 too stiff, which is where its fit has ended: four times the noise is left."""
-    spring = full_form(seeker.task, "cable_spring@pan")
-    end = alone(seeker, spring.key)
+    spring = full_form(stepwise.task, "cable_spring@pan")
+    end = alone(stepwise, spring.key)
     stiff = end.values | {"k1_cable_pan": end.values["k1_cable_pan"] * STUCK}
-    stuck = fitted(seeker.task, (spring,), stiff, end.fit.z, 0)
-    assert is_near_floor(stuck) and not seeker.is_at_noise(stuck)
-    assert seeker.is_at_noise(seeker.restarted(stuck))
+    stuck = fitted(stepwise.task, (spring,), stiff, end.fit.z, 0)
+    assert is_near_noise_floor(stuck) and not stepwise.is_white(stuck)
+    assert stepwise.is_white(stepwise.restarted(stuck))
 
 
-def test_what_was_found_and_not_chosen_is_remembered(seeker: Seeker) -> None:
+def test_what_was_found_and_not_chosen_is_remembered(stepwise: StepwiseSearch) -> None:
     """A set that cannot be told from the chosen one is looked for among those."""
-    torque, spring = (alone(seeker, key) for key in ("constant_torque@pan", "cable_spring@pan"))
-    seeker.tried.others.clear()
-    begun, _ = roads._begun(seeker, [torque, spring])
+    torque, spring = (alone(stepwise, key) for key in ("constant_torque@pan", "cable_spring@pan"))
+    stepwise.tried.others.clear()
+    begun, _ = roads._begun(stepwise, [torque, spring])
     assert begun.keys == spring.keys
-    assert torque.keys in {t.keys for t in seeker.tried.others}
+    assert torque.keys in {t.keys for t in stepwise.tried.others}
 
 
-def test_a_torque_that_is_not_there_is_taken_out_beside_the_spring(seeker: Seeker) -> None:
-    task = seeker.task
+def test_a_torque_that_is_not_there_is_taken_out_beside_the_spring(
+    stepwise: StepwiseSearch,
+) -> None:
+    task = stepwise.task
     both = tuple(full_form(task, key) for key in ("cable_spring@pan", "constant_torque@pan"))
-    start = seeker.declared.values | {f.name: f.start for c in both for f in c.free}
-    whole = seeker.polished(fitted(task, both, start, None))
-    assert seeker.is_at_noise(whole)
-    found, _ = seeker.pruned(whole)
+    start = stepwise.declared.values | {f.name: f.start for c in both for f in c.free}
+    whole = stepwise.polished(fitted(task, both, start, None))
+    assert stepwise.is_white(whole)
+    found, _ = stepwise.pruned(whole)
     assert found.keys == ("cable_spring@pan",)
 
 
-def alone(seeker: Seeker, key: str) -> Trial:
+def alone(stepwise: StepwiseSearch, key: str) -> Trial:
     """One candidate in its fullest form, fitted to its end."""
-    one = full_form(seeker.task, key)
-    start = seeker.declared.values | {f.name: f.start for f in one.free}
-    return seeker.polished(fitted(seeker.task, (one,), start, None))
+    one = full_form(stepwise.task, key)
+    start = stepwise.declared.values | {f.name: f.start for f in one.free}
+    return stepwise.polished(fitted(stepwise.task, (one,), start, None))
 
 
-def test_a_torque_that_stands_for_a_spring_ends_as_the_spring(seeker: Seeker) -> None:
-    found = roads._from_declared(seeker, [alone(seeker, "constant_torque@pan")])
+def test_a_torque_that_stands_for_a_spring_ends_as_the_spring(stepwise: StepwiseSearch) -> None:
+    found = roads._from_declared(stepwise, [alone(stepwise, "constant_torque@pan")])
     assert found.chosen.keys == ("cable_spring@pan",)
     assert found.chosen.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
 
@@ -169,19 +169,19 @@ def test_what_made_up_for_a_fit_that_was_stuck_is_taken_out(tmp_path: Path) -> N
         proposals = propose(task)
         task, end = over_whole_runs(task, proposals)
         stuck = fitted(task, (), end.values | {"b_pan": 0.2}, None)
-        seeker = Seeker(task, stuck, proposals, carried_noise(task, end.fit))
+        stepwise = StepwiseSearch(task, stuck, proposals, carried_noise(task, end.fit))
         spring = max((c for c in task.candidates if c.id == "cable_spring"), key=lambda c: c.member)
         values = stuck.values | {f.name: f.start for f in spring.free}
-        found = roads._from_declared(seeker, [fitted(task, (spring,), values, None, 1)])
+        found = roads._from_declared(stepwise, [fitted(task, (spring,), values, None, 1)])
     assert not found.chosen.candidates
     assert found.declared.values["b_pan"] == pytest.approx(end.values["b_pan"], rel=1e-3)
 
 
-def test_a_torque_gives_way_to_what_explains_more_than_it_does(seeker: Seeker) -> None:
+def test_a_torque_gives_way_to_what_explains_more_than_it_does(stepwise: StepwiseSearch) -> None:
     """One move alone: the torque is left out, and no candidate, while another is looked for."""
-    torque, spring = (alone(seeker, key) for key in ("constant_torque@pan", "cable_spring@pan"))
-    steps = [Step(torque.candidates[0], gain(torque, seeker.declared), 0.0, seeker.declared)]
-    found, _ = floated(seeker, torque, steps)
+    torque, spring = (alone(stepwise, key) for key in ("constant_torque@pan", "cable_spring@pan"))
+    steps = [Step(torque.candidates[0], gain(torque, stepwise.declared), 0.0, stepwise.declared)]
+    found, _ = floated(stepwise, torque, steps)
     assert found.candidates and "constant_torque@pan" not in found.keys
-    assert gain(found, torque).share >= seeker.task.material
-    assert floated(seeker, spring, steps) == (spring, steps)
+    assert gain(found, torque).share >= stepwise.task.material
+    assert floated(stepwise, spring, steps) == (spring, steps)

@@ -5,19 +5,19 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose.linear import projected_off
-from ptp_symbolic.numeric.diagnose.proposals import Proposals, propose
+from ptp_symbolic.numeric.diagnose.proposals import ProposedSets, propose
 from ptp_symbolic.numeric.diagnose.regression import remainder
+from ptp_symbolic.numeric.diagnose.responses import projected_off
 from tests.diagnose.spring_table import spring_table
 
 
 @pytest.fixture(scope="module")
-def proposals(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Proposals]:
+def proposals(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ProposedSets]:
     with spring_table(tmp_path_factory.mktemp("table")) as task:
         yield propose(task)
 
 
-def test_every_signature_is_finite_and_of_full_rank(proposals: Proposals) -> None:
+def test_every_signature_is_finite_and_of_full_rank(proposals: ProposedSets) -> None:
     """Columns are orthonormal by the first weights; later ones bend that a little."""
     rows = proposals.regression
     assert rows is not None
@@ -29,7 +29,7 @@ def test_every_signature_is_finite_and_of_full_rank(proposals: Proposals) -> Non
         assert np.linalg.cond(s.columns * root) < 2.0, s.candidate.key
 
 
-def test_the_spring_takes_up_what_the_declared_model_leaves(proposals: Proposals) -> None:
+def test_the_spring_takes_up_what_the_declared_model_leaves(proposals: ProposedSets) -> None:
     """The torque k theta is all that is missing; what stays is rounding of the angle."""
     rows = proposals.regression
     assert rows is not None

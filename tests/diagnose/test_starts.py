@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose import search, starts
+from ptp_symbolic.numeric.diagnose import refits, search
 from ptp_symbolic.numeric.diagnose.candidates import FAR_OFF
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise
+from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
-from ptp_symbolic.numeric.diagnose.seeker import Seeker
+from ptp_symbolic.numeric.diagnose.stepwise import StepwiseSearch
 from ptp_symbolic.numeric.diagnose.trial import Trial, fitted
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
 from tests.diagnose.spring_table import spring_table
@@ -49,9 +49,11 @@ def test_fits_begin_in_the_other_valleys_the_deepest_first(
 
         there = simulated_at(None, trial.fit, {"b_pan": own})
         trial = replace(trial, fit=replace(trial.fit, evaluations=tuple(there)))
-        monkeypatch.setattr(starts, "untold", lambda _: [damping, replace(damping, start=0.0)])
-        monkeypatch.setattr(starts, "simulated_at", simulated_at)
-        begun = starts.from_far_off(task, proposals, trial)
+        monkeypatch.setattr(
+            refits, "weakly_identified", lambda _: [damping, replace(damping, start=0.0)]
+        )
+        monkeypatch.setattr(refits, "simulated_at", simulated_at)
+        begun = refits.from_far_off(task, proposals, trial)
     found = [t.values["b_pan"] / START for t in begun]
     assert found == pytest.approx([1.0, 1.5**2, FAR_OFF, 1.0 / FAR_OFF], rel=1e-9)
     assert all(t.values["J_pan"] == trial.values["J_pan"] for t in begun)
@@ -66,10 +68,10 @@ def test_fits_begin_where_a_parameter_that_strayed_is_back(
     """Though every run has one place to begin from, and whatever it leaves."""
     with spring_table(tmp_path, stiffness=0.0) as task:
         proposals = propose(task)
-        monkeypatch.setattr(starts, "untold", lambda _: [])
+        monkeypatch.setattr(refits, "weakly_identified", lambda _: [])
         (damping,) = (f for f in task.free if f.name == "b_pan")
         there = proposals.start | {"b_pan": strayed * damping.start}
-        begun = starts.from_far_off(task, proposals, fitted(task, (), there, None))
+        begun = refits.from_far_off(task, proposals, fitted(task, (), there, None))
     found = [t.values["b_pan"] / damping.start for t in begun]
     assert found == pytest.approx(back, rel=1e-9)
 
@@ -80,12 +82,14 @@ def test_a_place_that_is_no_likelier_is_not_taken(
     with spring_table(tmp_path, stiffness=0.0) as task:
         proposals = propose(task)
         end = fitted(task, (), proposals.start, None, 12)
-        seeker = Seeker(task, end, proposals, carried_noise(task, end.fit))
+        stepwise = StepwiseSearch(task, end, proposals, carried_noise(task, end.fit))
         worse = fitted(task, (), end.values | {"b_pan": 1.2 * end.values["b_pan"]}, end.fit.z)
         polished: list[Trial] = []
-        monkeypatch.setattr(Seeker, "polished", lambda _, trial: polished.append(trial) or trial)
+        monkeypatch.setattr(
+            StepwiseSearch, "polished", lambda _, trial: polished.append(trial) or trial
+        )
         for begun, known, taken in ((end, end, end), (end, worse, end), (worse, end, end)):
             monkeypatch.setattr(search, "from_far_off", lambda *_, begun=begun: [begun])
             monkeypatch.setattr(search, "halving", lambda _, trials, *rest: trials)
-            assert search._better_from_far_off(seeker, known) is taken
+            assert search._better_from_far_off(stepwise, known) is taken
         assert polished == [end]

@@ -9,7 +9,7 @@ import pytest
 from ptp_symbolic.models.structures import pairs, structures
 from ptp_symbolic.models.variants import extended
 from ptp_symbolic.numeric.data import log_files, read_logs
-from ptp_symbolic.numeric.identify.work import Allowance
+from ptp_symbolic.numeric.identify.evidence import Allowance
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.preparation import workers
 from ptp_symbolic.workflows.structure_fits import Logs, fit_structures
@@ -124,7 +124,7 @@ def test_bristles_are_found_beside_the_shaft_and_leave_noise_alone(tmp_path: Pat
     with workers() as executor:
         logs = Logs(read, read, executor, lambda text: None, Allowance())
         alone = fit_structures(platform, [shaft], logs).every[0]
-        assert not alone.is_quiet
+        assert not alone.is_noise_alone
         there = extended(shaft.platform, (), alone.trial.values, ())
         beside = pairs(replace(shaft, platform=there))
         both = next(each for each in beside if "lugre_friction@pan" in each.keys)

@@ -123,8 +123,8 @@ def test_a_soft_shaft_is_found_by_a_fit_and_predicts_clearly_better(
     fits: dict[tuple[str, ...], FittedStructure],
 ) -> None:
     rigid, shaft = fits[()], fits["shaft_compliance@pan",]
-    assert not rigid.is_quiet
-    assert shaft.is_quiet
+    assert not rigid.is_noise_alone
+    assert shaft.is_noise_alone
     values = shaft.trial.values
     # A motor with a strong back EMF hardly feels the load: its logs tell ratios, not their size.
     for name, true in (("k_shaft_pan", STIFFNESS), ("d_shaft_pan", DAMPING)):
@@ -175,7 +175,7 @@ def test_a_structure_goes_on_from_the_values_of_one_that_contains_it_and_keeps_w
         begun = begin_structure(shaft.keys, shaft.provides, task, (stiff,), {})
         led = begun.from_values(true)
         kept = led.from_values(stiff)
-        assert led.fitted.is_quiet
+        assert led.fitted.is_noise_alone
     values = led.fitted.trial.values
     assert values["k_shaft_pan"] / values["J_pan"] == pytest.approx(STIFFNESS / J_LOAD, rel=0.01)
     assert kept.fitted.trial.fit.cost <= led.fitted.trial.fit.cost * (1.0 + 1e-9)

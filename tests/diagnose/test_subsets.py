@@ -11,19 +11,17 @@ from ptp_symbolic.numeric.diagnose import regression as regression_module
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.regression import (
     Regression,
-    regression,
-    remainder,
-    untold,
-)
-from ptp_symbolic.numeric.diagnose.signatures import Signature
-from ptp_symbolic.numeric.diagnose.subsets import (
     Subset,
     exchanges,
     gain_along_motion,
     is_no_worse,
     larger_sets,
     ranked_subsets,
+    regression,
+    remainder,
+    weakly_identified,
 )
+from ptp_symbolic.numeric.diagnose.signatures import Signature
 from ptp_symbolic.numeric.identify.constants import CYCLES, FAR, REPEATS
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.curves import Floats
@@ -233,11 +231,11 @@ def test_a_set_grows_by_the_planted_effect_that_it_lacks(planted: str) -> None:
         assert [c.key for c in first] == [*(c.key for c in have), lacking]
         gained = gain_along_motion(found, first, have)
         assert gained is not None
-        assert gained.is_clear(8)
+        assert gained.is_significant(8)
     every = named(found, planted)
     idle = [gain_along_motion(found, larger, every) for larger in larger_sets(found, every)]
     assert len(idle) == 8 - len(planted)
-    assert not any(g is None or g.is_clear(8) for g in idle)
+    assert not any(g is None or g.is_significant(8) for g in idle)
 
 
 def test_the_gain_along_the_motion_is_the_share_of_the_squares_that_is_planted() -> None:
@@ -294,4 +292,4 @@ def test_rows_that_overlap_tell_as_much_as_their_blocks_do(rms: float, named: li
     rng = np.random.default_rng(7)
     found = rows_of(rng, [], {}, BLOCKS)
     base = found.base * [1.0, rms]
-    assert [f.name for f in untold(replace(found, base=base))] == named
+    assert [f.name for f in weakly_identified(replace(found, base=base))] == named

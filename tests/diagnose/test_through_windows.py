@@ -10,11 +10,10 @@ import pytest
 
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.numeric.data import log_files, read_split_logs
-from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise, left_over
+from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise, normalised_residual
 from ptp_symbolic.numeric.diagnose.proposals import propose
-from ptp_symbolic.numeric.diagnose.refits import to_its_end
-from ptp_symbolic.numeric.diagnose.through_windows import through_windows
+from ptp_symbolic.numeric.diagnose.refits import fit_declared, to_its_end
+from ptp_symbolic.numeric.diagnose.search import through_windows
 from ptp_symbolic.numeric.diagnose.trial import Task, fitted
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.preparation import effect_keys, task_for, workers
@@ -49,7 +48,7 @@ def test_windows_lead_to_the_breakaway_of_the_machine(tmp_path: Path) -> None:
         assert found is not None
         own = fitted(task, (candidate,), {**declared.values, **truth}, None)
         best = to_its_end(task, own, carried)
-    assert np.all(left_over(found.fit) < 0.02 * left_over(declared.fit))
+    assert np.all(normalised_residual(found.fit) < 0.02 * normalised_residual(declared.fit))
     assert found.fit.cost <= 1.001 * best.fit.cost
     assert found.values["F_c_pan"] == pytest.approx(truth["F_c_pan"], rel=0.002)
 
@@ -61,4 +60,4 @@ def test_windows_lead_the_declared_model_out_of_a_wrong_stribeck_speed(tmp_path:
         _, declared = fit_declared(task, propose(task))
     for name in ("J_pan", "F_c_pan", "F_s_pan", "v_s_pan"):
         assert declared.values[name] == pytest.approx(truth[name], rel=0.03)
-    assert np.all(left_over(declared.fit) < 1.3)
+    assert np.all(normalised_residual(declared.fit) < 1.3)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose.trial import TUNING, Trial, misfits, ranked
+from ptp_symbolic.numeric.diagnose.trial import TUNING, Trial, deviances, ranked
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
 
@@ -18,7 +18,7 @@ def trial(residuals: Sequence[Floats]) -> Trial:
 
 def test_a_misfit_is_the_logarithm_of_the_mean_square_of_every_signal() -> None:
     two = [np.column_stack([2.0 * WAVE, 3.0 * WAVE])] * 4
-    (found,) = misfits([trial(two)])
+    (found,) = deviances([trial(two)])
     assert found == pytest.approx(240 * (np.log(4.0) + np.log(9.0)), rel=1e-12)
 
 
@@ -31,13 +31,13 @@ def test_trials_are_compared_in_the_scale_of_the_best() -> None:
     bent = 2.0 * np.sqrt(TUNING**2 * 100.0) - TUNING**2
     steady = 2.0 * np.sqrt(TUNING**2 * 25.0) - TUNING**2
     expected = [300 * np.log((4.0 + bent) / 5.0), 300 * np.log((4.0 * steady + bent) / 5.0)]
-    assert misfits([first, second]) == pytest.approx(expected, rel=1e-12)
-    assert misfits([second, first]) == pytest.approx(expected[::-1], rel=1e-12)
+    assert deviances([first, second]) == pytest.approx(expected, rel=1e-12)
+    assert deviances([second, first]) == pytest.approx(expected[::-1], rel=1e-12)
 
 
 def test_a_failed_simulation_ranks_last() -> None:
     good, failed = trial([WAVE]), trial([np.full(60, np.nan)])
-    assert misfits([failed, good])[0] == np.inf
+    assert deviances([failed, good])[0] == np.inf
     assert ranked([failed, good])[0] is good
 
 
@@ -45,7 +45,7 @@ def test_an_axis_that_rests_does_not_decide() -> None:
     """What one leaves of an angle at rest is a rounding of zero; the other signal is better."""
     better = [np.column_stack([1.0 * WAVE, 0.0 * WAVE])] * 4
     worse = [np.column_stack([1.2 * WAVE, 1e-15 * WAVE])] * 4
-    first, second = misfits([trial(better), trial(worse)])
+    first, second = deviances([trial(better), trial(worse)])
     assert second - first == pytest.approx(240 * np.log(1.44), rel=1e-12)
-    first, second = misfits([trial(worse), trial([t[:, ::-1] for t in worse])])
+    first, second = deviances([trial(worse), trial([t[:, ::-1] for t in worse])])
     assert first == pytest.approx(second)

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
-from ptp_symbolic.numeric.diagnose.preparation import turned_inputs
+from ptp_symbolic.numeric.diagnose.preparation import inverted_inputs
 from ptp_symbolic.numeric.diagnose.proposals import propose
+from ptp_symbolic.numeric.diagnose.refits import fit_declared
 from tests.diagnose.spring_table import log, table_of
 
 
@@ -23,6 +23,6 @@ def test_a_torque_with_its_sign_turned_is_said(
 
     with table_of(tmp_path, logged) as task:
         task, declared = fit_declared(task, propose(task))
-        found = turned_inputs(task, declared)
+        found = inverted_inputs(task, declared)
     assert len(found) == (1 if sign < 0.0 else 0)
     assert all("sign of 'tau_pan' inverted" in text for text in found)

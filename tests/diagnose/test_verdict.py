@@ -9,21 +9,21 @@ import pytest
 from scipy import stats
 from scipy.signal import lfilter
 
-from ptp_symbolic.numeric.diagnose.confirmed_sets import doubtful
-from ptp_symbolic.numeric.diagnose.findings import Step
-from ptp_symbolic.numeric.diagnose.floor import (
-    Floor,
-    floor_of,
-    leaves_noise_alone,
-    leaves_noise_of_inputs,
-)
-from ptp_symbolic.numeric.diagnose.held_out import (
+from ptp_symbolic.numeric.diagnose.confirm import ambiguous_value
+from ptp_symbolic.numeric.diagnose.gain import (
     chance_of_larger,
     held_out_gain,
-    is_borne_out,
-    is_quiet,
+    is_noise_alone,
+    is_validated,
 )
-from ptp_symbolic.numeric.diagnose.left_over import Carried
+from ptp_symbolic.numeric.diagnose.noise_floor import (
+    Carried,
+    NoiseFloor,
+    is_within_noise_of_inputs,
+    leaves_noise_alone,
+    noise_floor_of,
+)
+from ptp_symbolic.numeric.diagnose.stepwise import Step
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.diagnose.verdict import (
     EXPLAINED,
@@ -45,15 +45,15 @@ WAVE = np.where(np.arange(400) % 2, 1.0, -1.0)
 EFFECT = cast(Any, object())
 
 
-def floor(carried: float = 0.0) -> Floor:
+def floor(carried: float = 0.0) -> NoiseFloor:
     one = np.ones(1)
-    return Floor(one, one, Carried(*[carried * one] * 3))
+    return NoiseFloor(one, one, Carried(*[carried * one] * 3))
 
 
 def quiet(after: Fit, trained: Fit, carried: float = 0.0, left: Floats | None = None) -> bool:
     """Whether `after` is, by what it has `left` [runs, ny] (default: as no value is free)."""
     left = mean_squares(after.evaluations, after.runs) if left is None else left
-    return is_quiet(left, sizes(after.runs), floor(carried), trained)
+    return is_noise_alone(left, sizes(after.runs), floor(carried), trained)
 
 
 def word(
@@ -100,7 +100,7 @@ def test_what_the_noise_of_the_inputs_leaves_is_no_lack(
     of time tell.
     """
     trial = Trial((), finished([left * WAVE] * 3))
-    assert leaves_noise_of_inputs(trial, floor(carried)) is hidden
+    assert is_within_noise_of_inputs(trial, floor(carried)) is hidden
 
 
 @pytest.mark.parametrize("white", [False, True])
@@ -114,7 +114,7 @@ def test_slow_noise_is_noise_unless_it_is_known_to_be_white(white: bool) -> None
     trial = Trial((), finished(series))
     runs = trial.fit.runs
     task = SimpleNamespace(declared_noise=(), train=runs, every_sample=runs, white=white)
-    found = floor_of(cast(Any, task), trial, Carried(*[np.zeros(1)] * 3))
+    found = noise_floor_of(cast(Any, task), trial, Carried(*[np.zeros(1)] * 3))
     assert leaves_noise_alone(trial, found) is not white
     assert found.level[0] == pytest.approx(1.0 if white else np.sqrt(10.0), rel=0.2)
 
@@ -136,7 +136,7 @@ def test_slow_noise_goes_on_while_the_model_rests(goes_on: bool) -> None:
     runs = tuple(replace(r, measured=m) for r, m in zip(fit.runs, shown, strict=True))
     task = SimpleNamespace(declared_noise=(), train=runs, every_sample=runs, white=False)
     trial = Trial((), replace(fit, runs=runs))
-    found = floor_of(cast(Any, task), trial, Carried(*[np.zeros(1)] * 3))
+    found = noise_floor_of(cast(Any, task), trial, Carried(*[np.zeros(1)] * 3))
     assert leaves_noise_alone(trial, found) is goes_on
 
 
@@ -217,9 +217,9 @@ def test_windows_are_held_to_the_usual_noise_and_not_to_the_most_that_may_be() -
         np.ones(1),
     )
     left = mean_squares(after.evaluations, after.runs)
-    wide = Floor(one, 1.9 * one, Carried(*[0.0 * one] * 3))
-    assert not is_quiet(left, np.full(28, 400), wide, own)
-    assert is_quiet(left, np.full(28, 400), wide, after)
+    wide = NoiseFloor(one, 1.9 * one, Carried(*[0.0 * one] * 3))
+    assert not is_noise_alone(left, np.full(28, 400), wide, own)
+    assert is_noise_alone(left, np.full(28, 400), wide, after)
 
 
 def test_windows_that_leave_noise_are_quiet_however_little_those_at_rest_leave() -> None:
@@ -250,7 +250,7 @@ def test_a_known_value_is_doubted_first(
     trial = Trial((EFFECT,), finished([left * WAVE] * 3))
     candidate = SimpleNamespace(key="value", is_declared_value=declared_value)
     steps = [cast(Step, SimpleNamespace(candidate=candidate))]
-    found = doubtful(trial, steps, {"value": group}, floor())
+    found = ambiguous_value(trial, steps, {"value": group}, floor())
     assert found is (steps[0] if is_doubtful else None)
 
 
@@ -262,7 +262,7 @@ def test_validation_runs_that_improve_by_less_than_is_material_take_a_name_back(
     before, after = finished([2.0 * WAVE] * 4), finished([2.0 * left * WAVE] * 4)
     earned = held_out_gain(after, before)
     assert earned.share == pytest.approx(1.0 - left**2, rel=1e-9)
-    assert is_borne_out(earned, quiet=True, unusual=False, material=0.1) is not taken_back
+    assert is_validated(earned, quiet=True, unusual=False, material=0.1) is not taken_back
 
 
 @pytest.mark.parametrize(("left", "taken_back"), [(0.6, False), (0.8, True)])
@@ -272,7 +272,7 @@ def test_beside_a_remainder_in_validation_runs_a_name_takes_away_more_than_it_le
     """The share of the mean square: 64 and 36 %."""
     before, after = finished([9.0 * WAVE] * 4), finished([9.0 * left * WAVE] * 4)
     earned = held_out_gain(after, before)
-    assert is_borne_out(earned, quiet=False, unusual=False, material=0.1) is not taken_back
+    assert is_validated(earned, quiet=False, unusual=False, material=0.1) is not taken_back
 
 
 @pytest.mark.parametrize(
@@ -287,4 +287,4 @@ def test_beside_more_than_the_usual_noise_validation_runs_gain_clearly(
     before = finished([2.0 * WAVE] * 3)
     after = finished([1.2 * WAVE, 1.2 * WAVE, third * WAVE])
     earned = held_out_gain(after, before)
-    assert is_borne_out(earned, quiet=True, unusual=unusual, material=0.1) is borne_out
+    assert is_validated(earned, quiet=True, unusual=unusual, material=0.1) is borne_out

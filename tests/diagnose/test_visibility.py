@@ -7,9 +7,9 @@ import pytest
 from scipy import stats
 from scipy.linalg import expm
 
+from ptp_symbolic.numeric.diagnose.preparation import largest_limit, visible_amounts
 from ptp_symbolic.numeric.diagnose.trial import fitted
-from ptp_symbolic.numeric.diagnose.visibility import largest_limit, visible_amounts
-from ptp_symbolic.numeric.identify.simulations import all_values_at_start
+from ptp_symbolic.numeric.identify.least_squares import all_values_at_start
 from tests.diagnose.spring_table import COUNT, PAYLOAD, PERIOD, spring_table
 from tests.identify.curves import Floats
 

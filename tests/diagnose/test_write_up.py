@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.models.structures import structures
-from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
-from ptp_symbolic.numeric.diagnose.floor import Floor
-from ptp_symbolic.numeric.diagnose.left_over import Carried
+from ptp_symbolic.numeric.diagnose.noise_floor import Carried, NoiseFloor
+from ptp_symbolic.numeric.diagnose.proposals import declared_start
 from ptp_symbolic.numeric.diagnose.trial import fitted
 from ptp_symbolic.platform import ParameterDeclaration, Platform, SignalDeclaration, read_platform
 from ptp_symbolic.workflows.write_up import (
@@ -62,7 +61,7 @@ def test_noise_of_an_input_that_rules_is_said_unless_it_is_declared(
     torque = SignalDeclaration("tau_pan", "tau_pan", "N m", "input", noise=noise)
     platform = Platform("arm", "Arm", ("pan",), 9.81, (), (), (torque,))
     one = np.ones(1)
-    floor = Floor(one, one, Carried(*[carried * one] * 3))
+    floor = NoiseFloor(one, one, Carried(*[carried * one] * 3))
     found = _carried_remarks(platform, floor)
     assert len(found) == said
     assert all("tau_pan" in text and "noise = 0.0" in text for text in found)

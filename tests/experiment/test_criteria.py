@@ -11,8 +11,8 @@ from ptp_symbolic.numeric.experiment.contender import as_it_is, information, spr
 from ptp_symbolic.numeric.experiment.machine import Limit, Scenario, logged, play
 from ptp_symbolic.numeric.experiment.prediction import compared, precision
 from ptp_symbolic.numeric.identify.fit import fit_parameters
+from ptp_symbolic.numeric.identify.least_squares import Effort
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
-from ptp_symbolic.numeric.identify.simulations import Effort
 from tests.diagnose.spring_table import PERIOD
 from tests.experiment.table_contender import (
     AMPLITUDE,

@@ -12,9 +12,9 @@ from ptp_symbolic.numeric.data import Log
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, free_parameter
 from ptp_symbolic.numeric.identify.evaluate import Tolerance
 from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
+from ptp_symbolic.numeric.identify.least_squares import Effort
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
-from ptp_symbolic.numeric.identify.simulations import Effort
 from ptp_symbolic.platform import read_platform
 from tests.independent.pan_drive import CURRENT, LOAD_ANGLE, PanDrive, simulate
 from tests.independent.pan_logs import COUNT, CURRENT_NOISE, PERIOD, VOLTAGE_NOISE

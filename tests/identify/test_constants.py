@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy import integrate, signal, stats
 
-from ptp_symbolic.numeric.diagnose.visibility import SEEN
+from ptp_symbolic.numeric.diagnose.preparation import SEEN
 from ptp_symbolic.numeric.identify import constants as c
 from ptp_symbolic.numeric.identify import noise
-from ptp_symbolic.numeric.identify.robust_loss import MANY_RUNS
+from ptp_symbolic.numeric.identify.blocks import MANY_RUNS
 from ptp_symbolic.numeric.identify.weak_form import weak_average
 
 

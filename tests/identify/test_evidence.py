@@ -12,15 +12,16 @@ from ptp_symbolic.numeric.identify.evidence import (
     Evidence,
     InTurn,
     NotStoredError,
+    Threads,
+    Work,
     key_of,
     recorded,
     recording,
 )
 from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
 from ptp_symbolic.numeric.identify.intervals import estimates
-from ptp_symbolic.numeric.identify.replays import estimable
-from ptp_symbolic.numeric.identify.simulations import Effort
-from ptp_symbolic.numeric.identify.work import Threads, Work
+from ptp_symbolic.numeric.identify.least_squares import Effort
+from ptp_symbolic.numeric.identify.windows import estimable
 from tests.identify.pan_runs import MODEL, TRUTH, make_runs, sine, stairs, starts_off, unfree
 from tests.independent.pan_drive import PanDrive
 

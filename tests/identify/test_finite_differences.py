@@ -11,13 +11,12 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from ptp_symbolic.numeric.identify import replays
+from ptp_symbolic.numeric.identify import intervals
 from ptp_symbolic.numeric.identify.constants import MISLEADING, ROUGH
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, free_parameter, to_search
 from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
-from ptp_symbolic.numeric.identify.intervals import estimates, reaches
+from ptp_symbolic.numeric.identify.intervals import estimates, reaches, with_finite_differences
 from ptp_symbolic.numeric.identify.least_squares import Secants
-from ptp_symbolic.numeric.identify.replays import with_finite_differences
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
 from tests.identify.test_windows import COUNT, FREE, MODEL, run_of
@@ -91,8 +90,8 @@ def closed(monkeypatch: pytest.MonkeyPatch, residual: Residual, tangent: Floats)
     fit = finished([noise], [tangent[:, None]], free=(FREE_ONE,), values={"p": 1.0})
     secants = Secants(lambda _, phi, z: noise + residual(float(phi[0])), np.array([np.inf]))
     problem = SimpleNamespace(evaluate=lambda *_: list(fit.evaluations), refine=secants)
-    monkeypatch.setattr(replays, "simulations_of", lambda *_: None)
-    monkeypatch.setattr(replays, "problem_of", lambda *_: problem)
+    monkeypatch.setattr(intervals, "simulations_of", lambda *_: None)
+    monkeypatch.setattr(intervals, "problem_of", lambda *_: problem)
     return fit
 
 

@@ -13,9 +13,8 @@ from scipy import stats
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters, run_counts
-from ptp_symbolic.numeric.identify.intervals import estimates
-from ptp_symbolic.numeric.identify.replays import with_finite_differences
-from ptp_symbolic.numeric.identify.simulations import Effort, Simulations
+from ptp_symbolic.numeric.identify.intervals import estimates, with_finite_differences
+from ptp_symbolic.numeric.identify.least_squares import Effort, Simulations
 from tests.identify.pan_runs import (
     FINE_STEPS,
     FLOOR,

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate
-from ptp_symbolic.numeric.identify.gap_places import with_gap_places
+from ptp_symbolic.numeric.identify.fit import with_gap_places
 from ptp_symbolic.numeric.identify.run import Run
 from tests.identify.pan_runs import GAP, KNOWN, MODEL, THREE, TRUTH, Made, make_runs
 from tests.independent.pan_drive import PanDrive

@@ -104,5 +104,5 @@ def test_what_is_there_is_told_apart_from_the_drift() -> None:
     steps = 0.5 * (6.0 * 2.0 * np.sin(np.pi / 20.0)) ** 2
     found = gain_in_innovations(larger, smaller)
     assert found.share == pytest.approx(steps / (1.0 + steps), abs=0.05)
-    assert found.is_clear(1000)
+    assert found.is_significant(1000)
     assert gain(larger, smaller).share < 0.1

@@ -12,9 +12,8 @@ import pytest
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate, start_state
-from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
+from ptp_symbolic.numeric.identify.fit import Fit, carried_start, fit_parameters, has_linked, linked
 from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.identify.run_starts import carried_start, has_linked, linked
 from ptp_symbolic.numeric.identify.windows import cut_where_errors_grow, split_run
 from tests.identify.pan_runs import (
     FINE_STEPS,

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.identify.log_facts import facts_of
+from ptp_symbolic.numeric.identify.run_preparation import facts_of
 from tests.identify.straight import run_of
 
 COUNT = 1e-3  # rad

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.data import Log
-from ptp_symbolic.numeric.identify.equation_preparation import prepare_equation_space
+from ptp_symbolic.numeric.identify.equation_space import prepare_equation_space
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from tests.identify.pan_runs import COUNT, KNOWN, MODEL, PLATFORM
 from tests.identify.test_rows_off_face import EMF, FRICTION, LOAD, RATE, P

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose.held_out import left_by_best_values
+from ptp_symbolic.numeric.diagnose.gain import left_by_best_values
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, free_parameter
 from ptp_symbolic.numeric.identify.evaluate import evaluate
 from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
@@ -18,9 +18,9 @@ from ptp_symbolic.numeric.identify.intervals import (
     estimates,
     project_out,
 )
-from ptp_symbolic.numeric.identify.replays import estimable, with_input_noise
+from ptp_symbolic.numeric.identify.least_squares import Effort
 from ptp_symbolic.numeric.identify.run import with_inputs
-from ptp_symbolic.numeric.identify.simulations import Effort
+from ptp_symbolic.numeric.identify.windows import estimable, with_input_noise
 from ptp_symbolic.numeric.simulation.signals.inputs import constant, stack, table
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
@@ -45,20 +45,20 @@ def drifts(noise: float, draws: int) -> Floats:
     """Angles [k, draws] in rad that torque noise makes, held from sample to sample, without what a
     start can take up.
     """
-    shaken = np.random.default_rng(3).standard_normal((len(TIME), draws)) * noise / INERTIA
-    rate = 0.01 * np.cumsum(shaken, axis=0)
+    by_input_noise = np.random.default_rng(3).standard_normal((len(TIME), draws)) * noise / INERTIA
+    rate = 0.01 * np.cumsum(by_input_noise, axis=0)
     angle = np.zeros_like(rate)
-    angle[1:] = np.cumsum(0.01 * (rate[:-1] - 0.5 * 0.01 * shaken[:-1]), axis=0)
+    angle[1:] = np.cumsum(0.01 * (rate[:-1] - 0.5 * 0.01 * by_input_noise[:-1]), axis=0)
     return project_out(angle, LINE)
 
 
 def test_replays_change_the_residual_as_noise_of_the_input_does() -> None:
     fit = with_input_noise(accelerated(3), (0.002, 0.0))
-    assert [c.shape for c in fit.shaken] == [(2 * len(TIME), 34)] * 3
-    pan = np.concatenate([c[0::2] for c in fit.shaken], axis=1)
+    assert [c.shape for c in fit.by_input_noise] == [(2 * len(TIME), 34)] * 3
+    pan = np.concatenate([c[0::2] for c in fit.by_input_noise], axis=1)
     expected = np.sqrt(np.mean(drifts(0.002, 4000) ** 2)) / SIGMA
     assert np.sqrt(np.mean(pan**2)) == pytest.approx(expected, rel=0.2)
-    assert all(np.max(np.abs(c[1::2])) < 1e-9 for c in fit.shaken)
+    assert all(np.max(np.abs(c[1::2])) < 1e-9 for c in fit.by_input_noise)
 
 
 def test_silent_inputs_leave_a_fit_as_it_is() -> None:
@@ -84,8 +84,10 @@ def test_inputs_that_change_between_samples_are_no_noise() -> None:
         for r in (late, with_inputs(late, late.held_inputs))
     )
     assert np.max(np.abs(own.residual - held.residual)) > 0.5
-    shaken = with_input_noise(replace(fit, runs=(late,), evaluations=(own,)), (1e-9, 0.0)).shaken
-    assert np.max(np.abs(shaken[0])) < 1e-3
+    by_input_noise = with_input_noise(
+        replace(fit, runs=(late,), evaluations=(own,)), (1e-9, 0.0)
+    ).by_input_noise
+    assert np.max(np.abs(by_input_noise[0])) < 1e-3
 
 
 def test_an_interval_is_as_wide_as_noise_of_the_input_makes_it() -> None:
@@ -96,7 +98,7 @@ def test_an_interval_is_as_wide_as_noise_of_the_input_makes_it() -> None:
     shift = bend @ drifts(0.002, 4000) / (bend @ bend)
     half = 1.96 * np.std(shift) / math.sqrt(3.0)
     assert (told.upper - told.lower) / 2.0 == pytest.approx(half, rel=0.25)
-    (narrow,) = estimates(replace(known, shaken=()))
+    (narrow,) = estimates(replace(known, by_input_noise=()))
     assert narrow.upper - narrow.lower < 0.5 * (told.upper - told.lower)
 
 
@@ -152,9 +154,9 @@ def test_values_do_not_take_up_what_has_another_form() -> None:
     (run,) = after.runs
     measured = run.measured + np.column_stack([wave, 0.0 * wave])
     runs = (replace(run, measured=measured),)
-    shaken = fit_parameters(MODEL, runs, (), dict(known.values), None, Effort(20))
-    plain = left_by_best_values(shaken, replace(known, free=()), np.ones(2))
-    found = left_by_best_values(shaken, known, np.ones(2))
+    by_input_noise = fit_parameters(MODEL, runs, (), dict(known.values), None, Effort(20))
+    plain = left_by_best_values(by_input_noise, replace(known, free=()), np.ones(2))
+    found = left_by_best_values(by_input_noise, known, np.ones(2))
     assert found[0, 0] == pytest.approx(plain[0, 0], rel=0.05)
     reach = math.sqrt(6.635 * covariance_of(known)[0][0, 0])
     bend = 0.5 * TORQUE / INERTIA * TIME[-1] ** 2 / (6.0 * math.sqrt(5.0))
@@ -191,8 +193,8 @@ def windows(rng: np.random.Generator, replays: int, free: tuple[FreeParameter, .
         free,
         {f.name: float(v) for f, v in zip(free, found, strict=True)},
     )
-    shaken = [project_out(twice_integrated(rng, replays), start) for _ in tables]
-    return replace(fit, shaken=tuple(shaken))
+    by_input_noise = [project_out(twice_integrated(rng, replays), start) for _ in tables]
+    return replace(fit, by_input_noise=tuple(by_input_noise))
 
 
 def test_a_few_windows_that_noise_bends_have_intervals_that_hold_the_truth() -> None:
@@ -204,7 +206,9 @@ def test_a_few_windows_that_noise_bends_have_intervals_that_hold_the_truth() -> 
     for _ in range(200):
         fit = windows(rng, 25, FOUR)
         held.append([e.lower <= 0.0 <= e.upper for e in estimates(fit)])
-        without.append([e.lower <= 0.0 <= e.upper for e in estimates(replace(fit, shaken=()))])
+        without.append(
+            [e.lower <= 0.0 <= e.upper for e in estimates(replace(fit, by_input_noise=()))]
+        )
     assert np.mean(without) < 0.92
     assert 0.90 <= np.mean(held) <= 0.99
 

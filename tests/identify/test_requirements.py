@@ -7,15 +7,17 @@ import pytest
 
 import ptp_symbolic
 from ptp_symbolic.numeric.identify.coordinates import (
+    Allow,
     FreeParameter,
     free_parameter,
+    keep_possible,
+    nearest_possible,
     to_search,
     to_values,
 )
 from ptp_symbolic.numeric.identify.fit import fit_parameters
 from ptp_symbolic.numeric.identify.intervals import estimates
-from ptp_symbolic.numeric.identify.requirements import Allow, keep_possible, nearest_possible
-from ptp_symbolic.numeric.identify.simulations import Effort, all_values
+from ptp_symbolic.numeric.identify.least_squares import Effort, all_values
 from ptp_symbolic.numeric.runtime.model import Model
 from tests.identify.pan_runs import (
     FLOOR,

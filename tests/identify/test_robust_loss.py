@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from ptp_symbolic.numeric.identify.least_squares import Problem, cost_of, minimise
-from ptp_symbolic.numeric.identify.robust_loss import (
+from ptp_symbolic.numeric.identify.blocks import (
     blocks_of,
     robust_tuning,
     weighted_median,
 )
+from ptp_symbolic.numeric.identify.least_squares import Problem, cost_of, minimise
 from tests.identify.curves import Floats, evaluation
 
 

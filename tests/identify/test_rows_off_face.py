@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.data import Log
-from ptp_symbolic.numeric.identify.equation_preparation import prepare_equation_space
-from ptp_symbolic.numeric.identify.equation_space import EquationSpace
+from ptp_symbolic.numeric.identify.equation_space import EquationSpace, prepare_equation_space
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from tests.identify.pan_runs import COUNT, KNOWN, MODEL, PLATFORM, TRUTH
 

@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.identify.run import with_inputs
-from ptp_symbolic.numeric.identify.sample_averages import samples_within, thinned
+from ptp_symbolic.numeric.identify.run import samples_within, thinned, with_inputs
 from ptp_symbolic.numeric.simulation.signals.inputs import held_values
 from tests.identify.straight import run_of
 

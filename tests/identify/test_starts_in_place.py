@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.identify import simulations
+from ptp_symbolic.numeric.identify import least_squares
 from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE
 from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate
+from ptp_symbolic.numeric.identify.fit import starts_in_place
 from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.identify.run_starts import starts_in_place
 from ptp_symbolic.numeric.identify.windows import cut
 from tests.identify.curves import Floats
 from tests.identify.pan_runs import KNOWN, MODEL, TRUTH, make_runs, sine, stairs
@@ -49,7 +49,7 @@ def test_a_window_is_not_begun_anew_that_leaves_what_is_usual(
             calls[usual] += 1
             return evaluate(*arguments)
 
-        monkeypatch.setattr(simulations, "evaluate", counted)
+        monkeypatch.setattr(least_squares, "evaluate", counted)
         return starts_in_place(MODEL, windows, values, guesses, Tolerance(), None, usual=usual)
 
     every = mean_squares(windows, begun(1.0), values)

@@ -4,7 +4,7 @@ import numpy as np
 
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.data import Log
-from ptp_symbolic.numeric.identify.equation_preparation import prepare_equation_space
+from ptp_symbolic.numeric.identify.equation_space import prepare_equation_space
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.platform import EffectDeclaration, Platform, SignalDeclaration
 

@@ -11,12 +11,13 @@ import ptp_symbolic
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.data import Log
 from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate, simulated_signals
-from ptp_symbolic.numeric.identify.replays import input_noise, propagated_noise
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.numeric.identify.windows import (
     cut,
     cut_where_errors_grow,
+    input_noise,
+    propagated_noise,
     split_run,
     window_length,
 )

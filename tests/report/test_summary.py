@@ -10,10 +10,9 @@ import pytest
 
 from ptp_symbolic.numeric.diagnose import summary
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.errors import curves_of, error_of
-from ptp_symbolic.numeric.diagnose.findings import Tried
 from ptp_symbolic.numeric.diagnose.remainder import residual_tests
-from ptp_symbolic.numeric.diagnose.summary import sizes_of
+from ptp_symbolic.numeric.diagnose.stepwise import Tried
+from ptp_symbolic.numeric.diagnose.summary import curves_of, error_of, sizes_of
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.diagnose.verdict import EXPLAINED, NOTHING_MISSING, PARTLY, UNEXPLAINED
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
@@ -111,7 +110,7 @@ def test_a_declared_value_is_wrong_by_so_many_percent(
     trial = _trial(candidate, value=DECLARED * (1.0 + share))
     text = summary.headline(_verdict(EXPLAINED, trial), _errors(), {})
     assert text.startswith(f"Declared value of J_y_tilt is {words} (inertia of the tilt body")
-    assert ("statistically clear but small" in text) == small
+    assert ("statistically significant but small" in text) == small
 
 
 @pytest.mark.parametrize(("counts", "shown"), [(0.5, "0.500 counts"), (None, "0.000543 rad")])

@@ -1,11 +1,12 @@
-"""Effects that act where more than noise is left, found in the torques along the measured motion.
+"""Effects beside a residual above the noise floor, found in the torques along the measured motion.
 
-A torque that the model lacks is integrated twice in an angle: beside a remainder, simulations see
-its slow part alone, and effects gain in them by the drift they follow. The rows of the equation
-space see it as it is, unless a gear crosses a gap. There, in rows with the shortest windows that
-noise allows, a set grows by the effects that gain materially and clearly on blocks left out: longer
-windows average away what is fast, such as a delay. Its values and their intervals are those of a
-fit to the same rows (inverse dynamic identification: Gautier and Khalil, 1990).
+A torque that the model lacks is integrated twice in an angle: beside an unexplained residual,
+simulations see its slow part alone, and effects gain in them by the drift they follow. The
+weak-form regression rows see it as it is, unless a gear crosses a gap. There, in rows with the
+shortest windows that noise allows, a set is extended by effects whose gain on blocks left out is
+material and significant: longer windows average away what is fast, such as a delay. Its values and
+their intervals are those of a fit to the same rows (inverse dynamic identification: Gautier and
+Khalil, 1990).
 """
 
 from collections.abc import Collection, Mapping, Sequence
@@ -19,14 +20,27 @@ from ptp_symbolic.numeric.diagnose.candidates import (
     with_what_needs_it,
     without_member,
 )
-from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, breaks_its_law, why_unconfirmed
-from ptp_symbolic.numeric.diagnose.declared_rows import equation_space, possible
-from ptp_symbolic.numeric.diagnose.findings import looked_at
-from ptp_symbolic.numeric.diagnose.gain import Gain, compared
-from ptp_symbolic.numeric.diagnose.held_out import simulated_freely
-from ptp_symbolic.numeric.diagnose.proposals import Proposals, in_rows_of, start_of
-from ptp_symbolic.numeric.diagnose.regression import Regression, block_numbers
-from ptp_symbolic.numeric.diagnose.subsets import exchanges, gain_along_motion, larger_sets
+from ptp_symbolic.numeric.diagnose.confirm import (
+    contradicts_its_law,
+    is_moved_by_inputs,
+    why_unconfirmed,
+)
+from ptp_symbolic.numeric.diagnose.gain import Gain, compared, simulated_freely
+from ptp_symbolic.numeric.diagnose.proposals import (
+    ProposedSets,
+    equation_space,
+    in_rows_of,
+    possible,
+    start_of,
+)
+from ptp_symbolic.numeric.diagnose.regression import (
+    Regression,
+    block_numbers,
+    exchanges,
+    gain_along_motion,
+    larger_sets,
+)
+from ptp_symbolic.numeric.diagnose.stepwise import looked_at
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, all_free
 from ptp_symbolic.numeric.identify.constants import FAR, LARGEST, TRIED
 from ptp_symbolic.numeric.identify.coordinates import slopes, to_search
@@ -34,8 +48,8 @@ from ptp_symbolic.numeric.identify.equation_fit import fit_equations, linearised
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
 from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.least_squares import POLISH
 from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.identify.simulations import POLISH
 
 FloatArray = NDArray[np.float64]
 
@@ -44,29 +58,30 @@ FloatArray = NDArray[np.float64]
 class AlongMotion:
     """A set that has grown along the motion: `fit` is that to the rows, `trial` the training runs
     simulated with its values. By the key of each candidate, `gains` is what it gains in the rows,
-    and `alike` are the candidates beside which it gains nothing, and which predict as well.
+    and `alternatives` are the candidates beside which it gains nothing, and which predict as well.
     """
 
     trial: Trial
     fit: Fit
     gains: Mapping[str, Gain]
-    alike: Mapping[str, tuple[str, ...]]
+    alternatives: Mapping[str, tuple[str, ...]]
 
 
-def grown_along_motion(
+def extended_along_motion(
     task: Task,
-    found: Proposals,
+    found: ProposedSets,
     trial: Trial,
     runs: Sequence[Run],
-    lawless: Collection[str] = (),
+    contradicting: Collection[str] = (),
 ) -> AlongMotion | None:
     """The set of a trial with what else gains along the measured motion, simulated on the training
     `runs`; None where nothing does, or where the rows do not show all of the set.
 
-    Declared values are not looked for: beside a remainder they stand in for much. What has grown
-    takes away a material part of the torque that the set leaves along the validation runs. Torques
-    go with the rate by their laws, loosely (see `breaks_its_law`). Those whose keys are `lawless`
-    went in another way in a set that may have lacked more: they keep theirs in one that has grown.
+    Declared values are not tried: beside an unexplained residual they are aliased with many
+    effects. The extended set reduces the residual torque along the validation runs by a material
+    share. Torques depend on the rate as their laws say, within loose limits (see
+    `contradicts_its_law`). Those whose keys are `contradicting` did not in a smaller set, which may
+    have lacked more: they are held to their laws in the extended one.
     """
     if found.regression is None or len(task.model.contacts):
         return None
@@ -77,7 +92,7 @@ def grown_along_motion(
     rows = in_rows_of(task, space, found.start, candidates)
     if not set(trial.keys) <= {s.candidate.key for s in rows.signatures}:
         return None
-    motion = _Motion(task, space, rows, found.start, lawless)
+    motion = _Motion(task, space, rows, found.start, contradicting)
     while len(candidates) < len(trial.candidates) + LARGEST:
         effects = [
             s for s in larger_sets(rows, candidates) if not any(c.is_declared_value for c in s)
@@ -93,23 +108,24 @@ def grown_along_motion(
     if not motion.predicts_better(fit, motion.fitted(trial.candidates)):
         return None
     final = Trial(candidates, replace(simulated_freely(task, runs, fit.values), free=fit.free))
-    if final.fit.failed or not answers_to_inputs(task, final):
+    if final.fit.failed or not is_moved_by_inputs(task, final):
         return None
     gains = {c.key: gain for c in candidates if (gain := motion.gain(candidates, c)) is not None}
-    return AlongMotion(final, fit, gains, motion.alike(candidates))
+    return AlongMotion(final, fit, gains, motion.alternatives(candidates))
 
 
 @dataclass(frozen=True, eq=False)
 class _Motion:
     """The `space` whose rows sets are fitted to, those `rows` as a regression in which sets are
-    compared, and all parameters at the `start` of every fit; `lawless` as in `grown_along_motion`.
+    compared, and all parameters at the `start` of every fit; `contradicting` as in
+    `extended_along_motion`.
     """
 
     task: Task
     space: EquationSpace
     rows: Regression
     start: Mapping[str, float]
-    lawless: Collection[str]
+    contradicting: Collection[str]
 
     def gain(self, candidates: Sequence[Candidate], member: Candidate) -> Gain | None:
         """What a member of a set gains in the rows, with what needs it; None where they do not show
@@ -119,20 +135,22 @@ class _Motion:
         return gain_along_motion(self.rows, candidates, smaller)
 
     def earns(self, candidates: Sequence[Candidate], member: Candidate) -> bool:
-        """Whether what a member of a set gains is material, and clear over all candidates and
-        frequencies that were compared.
+        """Whether the gain of a member of a set is material, and significant over all candidates
+        and frequencies that were compared.
         """
         return self._is_earned(self.gain(candidates, member), member)
 
     def _is_earned(self, found: Gain | None, member: Candidate) -> bool:
         tests = looked_at(self.task.candidates, [member])
-        return found is not None and found.share >= self.task.material and found.is_clear(tests)
+        return (
+            found is not None and found.share >= self.task.material and found.is_significant(tests)
+        )
 
     def in_simplest_forms(
         self, candidates: Sequence[Candidate], kept: Sequence[Candidate]
     ) -> tuple[Candidate, ...]:
         """A set with every member that is not `kept` in the simplest form beside which a fuller one
-        earns nothing: a cubic spring about a far place is a linear one as well.
+        gains nothing: a cubic spring about a far place is a linear one as well.
         """
         for member in [c for c in candidates if c not in kept]:
             every = [s.candidate for s in self.rows.signatures if s.candidate.key == member.key]
@@ -145,8 +163,8 @@ class _Motion:
         return tuple(candidates)
 
     def is_confirmed(self, candidates: Sequence[Candidate]) -> bool:
-        """Whether every member of a set earns its place and stands the rest of what a name asks
-        for.
+        """Whether every member of a set has such a gain, and passes the other tests that a name
+        requires.
         """
         if not all(self.earns(candidates, c) for c in candidates):
             return False
@@ -155,20 +173,20 @@ class _Motion:
         if any(why_unconfirmed(fit, c, leaves_noise=False) for c in members):
             return False
         return not any(
-            breaks_its_law(
+            contradicts_its_law(
                 self.task,
                 self.space,
                 candidates,
                 fit.values,
                 c,
-                loosely=c.key not in self.lawless,
+                loosely=c.key not in self.contradicting,
             )
             for c in candidates
         )
 
-    def alike(self, candidates: Sequence[Candidate]) -> dict[str, tuple[str, ...]]:
+    def alternatives(self, candidates: Sequence[Candidate]) -> dict[str, tuple[str, ...]]:
         """By the key of each member of a set, those that predict no worse in its place, and beside
-        which it earns nothing any more.
+        which it gains nothing any more.
         """
         found: dict[str, set[str]] = {c.key: set() for c in candidates}
         for other in exchanges(self.rows, candidates):
@@ -203,8 +221,9 @@ class _Motion:
         return Fit(task.model, tuple(runs), free, values, (), cost, tuple(evaluations))
 
     def predicts_better(self, larger: Fit, smaller: Fit) -> bool:
-        """Whether the values of one fit leave materially less torque along the validation runs than
-        those of another, in windows as short as those of the training runs.
+        """Whether the residual torque along the validation runs is materially smaller with the
+        values of one fit than with those of another, in windows as short as those of the training
+        runs.
         """
         space = equation_space(
             self.task, self.start, self.task.validate, half_width=self.space.half_width

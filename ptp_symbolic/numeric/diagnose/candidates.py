@@ -27,10 +27,10 @@ class Candidate:
     it off at the values given, in their units, all others shape it. `shapes` are sets of values of
     the shaping parameters from which a search begins. `locked` is a shaping frequency that a scan
     finds, with what it is locked to ("time" or "angle"); the scan has compared so many that can be
-    told from one another (`frequencies_compared`). `brings` are keys of candidates without which it
-    has nothing to act on. `whole_only` are parameters that show only at the amount with which they
-    begin (see `late_inputs`). `leading` are those parameters that can only be the larger part of
-    it. `member` numbers the nested versions, the simplest first.
+    resolved (`frequencies_compared`). `brings` are keys of candidates without which it has nothing
+    to act on. `whole_only` are parameters that show only at the amount with which they begin (see
+    `at_best_delays`). `dominant` are those parameters that can only be the larger part of it.
+    `member` numbers the nested versions, the simplest first.
     """
 
     id: str
@@ -42,7 +42,7 @@ class Candidate:
     shapes: tuple[Mapping[str, float], ...] = ({},)
     locked: tuple[str, str] | None = None
     brings: tuple[str, ...] = ()
-    leading: tuple[str, ...] = ()
+    dominant: tuple[str, ...] = ()
     member: int = 0
     member_title: str = ""
     frequencies_compared: int = 1
@@ -145,7 +145,7 @@ def _members(
 ) -> list[Candidate]:
     members = effect.members or (("", effect.parameters, ()),)
     brings = tuple(key for key in effect.acts_on if key not in declared)
-    leading = members[0][1] if effect.first_leads else ()
+    dominant = members[0][1] if effect.first_leads else ()
     found = []
     for number, (title, names, ties) in enumerate(members):
         own = [by_name[name] for name in names]
@@ -164,7 +164,7 @@ def _members(
                 tuple(dict(zip([p.name for p in shaping], point, strict=True)) for point in grid),
                 locked,
                 brings,
-                tuple(name for name in leading if by_name[name].vanishes is not None),
+                tuple(name for name in dominant if by_name[name].vanishes is not None),
                 number,
                 title,
             )

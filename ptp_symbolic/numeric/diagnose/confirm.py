@@ -1,28 +1,51 @@
-"""What an effect must stand before it is named, besides its predictive gain.
+"""What an effect must pass before it is named, besides its predictive gain; and what remains of a
+set once the members that are not confirmed are dropped, or simplified.
 
-Whether the torque of an effect goes with the rate as its law says.
-
-What has the shape of an effect along the angle, but another law of the rate, has to be of one size
+A torque with the shape of an effect along the angle, but another law of the rate, is of one size
 where its axis is slow and of another where it is fast. Simulations hardly see that, for they
-integrate both; the rows of the equation space do.
+integrate both; the weak-form rows do.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.linear import (
+from ptp_symbolic.numeric.diagnose.candidates import Candidate, with_what_needs_it
+from ptp_symbolic.numeric.diagnose.gain import (
+    Gain,
+    gain,
+    gain_in_innovations,
+    held_out_fit,
+    held_out_gain,
+)
+from ptp_symbolic.numeric.diagnose.groups import Alternative
+from ptp_symbolic.numeric.diagnose.noise_floor import (
+    NoiseFloor,
+    is_within_noise_of_inputs,
+    leaves_noise_alone,
+    noise_floor_of,
+)
+from ptp_symbolic.numeric.diagnose.refits import expected_gain, forms, without_run
+from ptp_symbolic.numeric.diagnose.regression import block_numbers
+from ptp_symbolic.numeric.diagnose.responses import (
     effect_of,
-    left_beside,
     projected_off,
+    residual_beside,
     stacked_jacobian,
     stacked_residual,
 )
-from ptp_symbolic.numeric.diagnose.regression import block_numbers
+from ptp_symbolic.numeric.diagnose.stepwise import (
+    Refusals,
+    Step,
+    StepwiseSearch,
+    begun_in_form,
+    simplified,
+    step_of,
+)
 from ptp_symbolic.numeric.diagnose.trial import SHARP, Task, Trial, all_free, tolerance_for
 from ptp_symbolic.numeric.identify.blocks import (
     ELSEWHERE,
@@ -46,10 +69,12 @@ from ptp_symbolic.numeric.identify.equation_space import EquationSpace, row_moti
 from ptp_symbolic.numeric.identify.evaluate import evaluate
 from ptp_symbolic.numeric.identify.evidence import recorded
 from ptp_symbolic.numeric.identify.fit import Fit
-from ptp_symbolic.numeric.identify.intervals import chance_of_zero
+from ptp_symbolic.numeric.identify.intervals import chance_of_zero, with_finite_differences
 from ptp_symbolic.numeric.identify.run import with_inputs
+from ptp_symbolic.numeric.identify.windows import estimable
 
 FloatArray = NDArray[np.float64]
+
 
 Refit = Callable[[str], Fit]  # the fit without the run of that name
 
@@ -59,27 +84,27 @@ def why_unconfirmed(
 ) -> str | None:
     """Why `candidate` of a set cannot be named; None where nothing speaks against it. `fit` is that
     of the set, from `with_finite_differences` if it is one of simulations, `refit` that of
-    `unstable_without`. Where more than noise is left, the candidate may make up for what is
-    missing; where noise alone is, for a better place of the other parameters.
+    `depends_on_run`. Where the residual exceeds the noise, the candidate may compensate a missing
+    effect; where it is noise alone, other parameters away from their optimum.
     """
     bound = at_bound(fit, candidate)
     if bound is not None:
         return f"{bound} ends at its bound"
     if not leaves_noise and not is_amount_known(fit, candidate):
         return "its amount is not significantly different from zero"
-    if leaves_noise and is_done_by_others(fit, candidate):
+    if leaves_noise and is_reproduced_by_others(fit, candidate):
         return "other parameters of the model reproduce all that it does"
-    if not leads(fit, candidate):
+    if not first_dominates(fit, candidate):
         return "its higher harmonics are larger than its first"
-    run = unstable_without(fit, candidate, refit)
+    run = depends_on_run(fit, candidate, refit)
     if run is not None:
         return f"its value changes significantly without {run}"
     return None
 
 
 def is_amount_known(fit: Fit, candidate: Candidate) -> bool:
-    """Whether the parameters that switch the candidate on can be told from where they switch it
-    off: a set may need an effect that only makes up for others.
+    """Whether the parameters that switch the candidate on differ significantly from where they
+    switch it off: an effect may merely compensate others.
 
     None of them need be known alone, for they may trade for each other. Nor need the shape be
     known: a single axis feels a base that shakes by what goes along with it, whatever the azimuth.
@@ -87,9 +112,9 @@ def is_amount_known(fit: Fit, candidate: Candidate) -> bool:
     return chance_of_zero(fit, candidate.vanishing, candidate.parameters) < FALSE_ALARM
 
 
-def is_done_by_others(fit: Fit, candidate: Candidate) -> bool:
-    """Whether the other parameters can do all that the candidate does, within their bounds and by
-    linear prediction: a small part of it is left beside them, and changes the mean square by less
+def is_reproduced_by_others(fit: Fit, candidate: Candidate) -> bool:
+    """Whether the other parameters reproduce all that the candidate does, within their bounds and
+    by linear prediction: the part that they cannot is small, and changes the mean square by less
     than errors of simulations do.
     """
     square, whole, left = _beside_others(fit, candidate)
@@ -98,23 +123,23 @@ def is_done_by_others(fit: Fit, candidate: Candidate) -> bool:
 
 @recorded()
 def _beside_others(fit: Fit, candidate: Candidate) -> tuple[float, float, float]:
-    """Sums of squares: of what is left of a candidate beside what all other parameters can do, of
-    all that it does, and of the residual.
+    """Sums of squares: of the part of an effect that all other parameters cannot reproduce, of the
+    whole effect, and of the residual.
     """
     rows = _rows_of(fit)
     others = {f.name for f in fit.free} - set(candidate.parameters)
     effect = effect_of(fit, candidate.vanishing, rows.columns)
-    square = left_beside(fit, effect, others, rows.columns)
+    square = residual_beside(fit, effect, others, rows.columns)
     return square, float(effect @ effect), float(rows.residual @ rows.residual)
 
 
-def leads(fit: Fit, candidate: Candidate) -> bool:
+def first_dominates(fit: Fit, candidate: Candidate) -> bool:
     """Whether the part of a candidate that has to be the larger one is so: a disc off its centre
     reads wrongly once per turn, and twice by the square of that.
     """
     amount = {n: fit.values[n] - zero for n, zero in candidate.vanishing.items()}
-    first = np.linalg.norm([amount.pop(name) for name in candidate.leading])
-    return not candidate.leading or bool(first >= np.linalg.norm(list(amount.values())))
+    first = np.linalg.norm([amount.pop(name) for name in candidate.dominant])
+    return not candidate.dominant or bool(first >= np.linalg.norm(list(amount.values())))
 
 
 def at_bound(fit: Fit, candidate: Candidate) -> str | None:
@@ -135,7 +160,7 @@ def at_bound(fit: Fit, candidate: Candidate) -> str | None:
     return None
 
 
-def unstable_without(fit: Fit, candidate: Candidate, refit: Refit | None = None) -> str | None:
+def depends_on_run(fit: Fit, candidate: Candidate, refit: Refit | None = None) -> str | None:
     """Leave-one-run-out: the first run without which less than half of the effect, or its opposite,
     would be found.
 
@@ -157,8 +182,8 @@ def unstable_without(fit: Fit, candidate: Candidate, refit: Refit | None = None)
 @dataclass(frozen=True, eq=False)
 class _WithoutRuns:
     """By the `names` of the logs, the `shares` of the square of an effect that each holds, and how
-    much of the effect is `left` without it, by linear prediction; by `change` [nf] per unit of the
-    search coordinates from where they are `at` [nf].
+    much of the effect remains (`left`) without it, by linear prediction; by `change` [nf] per unit
+    of the search coordinates from where they are `at` [nf].
     """
 
     names: tuple[str, ...]
@@ -168,13 +193,13 @@ class _WithoutRuns:
     at: FloatArray
 
     def left_at(self, fit: Fit, values: Mapping[str, float]) -> float:
-        """How much of the effect is left at other values."""
+        """How much of the effect remains at other values."""
         return 1.0 + float(self.change @ (to_search(fit.free, values) - self.at))
 
 
 @recorded(_WithoutRuns)
 def _without_each_run(fit: Fit, candidate: Candidate) -> _WithoutRuns:
-    """What `unstable_without` asks of every log; of no log where there is no effect."""
+    """What `depends_on_run` compares for every log; for none where there is no effect."""
     names, residual, columns, step, label = _rows_of(fit)
     shifts = leave_blocks_out(residual, columns, label).shifts
     own = [k for k, f in enumerate(fit.free) if f.name in candidate.parameters]
@@ -215,9 +240,9 @@ def _rows_of(fit: Fit) -> _Rows:
     return _Rows(names, *weighed, np.repeat(source, signals))
 
 
-def answers_to_inputs(task: Task, trial: Trial) -> bool:
-    """Whether the inputs move the fitted model by more than it leaves over: a model so inert that
-    free starts alone follow the logs explains nothing.
+def is_moved_by_inputs(task: Task, trial: Trial) -> bool:
+    """Whether the inputs move the fitted model by more than its residual: a model so inert that
+    free initial states alone follow the logs explains nothing.
     """
     changed, left = _without_inputs(task, trial)
     return changed > left
@@ -225,7 +250,7 @@ def answers_to_inputs(task: Task, trial: Trial) -> bool:
 
 @recorded()
 def _without_inputs(task: Task, trial: Trial) -> tuple[float, float]:
-    """Sums of squares: of what the inputs change in the outputs, and of what the trial leaves."""
+    """Sums of squares: of what the inputs change in the outputs, and of the residual."""
     p, none = task.model.parameter_vector(trial.values), np.zeros(0, dtype=np.int64)
     changed = left = 0.0
     for (run, e), z in zip(trial.fit.pairs(), trial.fit.z, strict=True):
@@ -237,7 +262,7 @@ def _without_inputs(task: Task, trial: Trial) -> tuple[float, float]:
     return changed, left
 
 
-def breaks_its_law(
+def contradicts_its_law(
     task: Task,
     space: EquationSpace,
     candidates: Sequence[Candidate],
@@ -246,14 +271,14 @@ def breaks_its_law(
     *,
     loosely: bool = False,
 ) -> bool:
-    """Whether the torque of a member of a set at `values` changes with the speed of its axis in
-    another way than its law says, clearly, and by a material share of what the rows ask for or
-    by most of its own: a multiple of it times speed / mean speed - 1 is added, where all parameters
-    are free, its own too. That multiple is 0 by its law, and 1 for what goes with the speed beside
-    that. Blocks of time are left out in turn to tell how clear it is. `loosely` it has to be both,
-    a material share and most of its own: the friction of a real machine follows no law exactly.
-    Errors of sensors are no torques, and what acts on currents or temperatures comes to the joint
-    through these, late.
+    """Whether the torque of a member of a set at `values` depends on the speed of its axis in
+    another way than its law says, significantly, and by a material share of the torque of the rows
+    or by most of its own: a multiple of it times speed / mean speed - 1 is added, where all
+    parameters are free, its own too. That multiple is 0 by its law, and 1 for what goes with the
+    speed beside that. Its error is that of a jackknife over blocks of time. `loosely` it has to be
+    both, a material share and most of its own: the friction of a real machine follows no law
+    exactly. Errors of sensors are no torques, and what acts on currents or temperatures comes to
+    the joint through these, late.
     """
     names = list(task.model.parameter_names)
     elsewhere = space.sensing | space.moving
@@ -291,3 +316,199 @@ def breaks_its_law(
     scaled = 1.0 + float(own @ table[:, mine] @ change[1:][mine]) / float(own @ own)
     most = abs(change[0]) > MOST * abs(scaled)
     return bool(clear and (material and most if loosely else material or most))
+
+
+class Weakness(NamedTuple):
+    """A candidate that is not confirmed, and why not."""
+
+    step: Step
+    reason: str
+    breaks_law: bool = False
+
+
+def confirmed(
+    stepwise: StepwiseSearch, trial: Trial, steps: list[Step], refused: Refusals
+) -> tuple[Trial, list[Step], Fit]:
+    """The trial without the members that are not confirmed, which are noted in `refused` with the
+    reason; its steps, and its fit as the tests need it (see `_examined`).
+    """
+    fit = _examined(stepwise, trial)
+    while trial.candidates:
+        simpler = _off_bounds(stepwise, trial, fit)
+        weakness = _weakness(stepwise, trial, steps, fit) if simpler is None else None
+        if simpler is not None:
+            trial, steps = shortened(stepwise, simpler)
+        elif weakness is not None:
+            key = weakness.step.candidate.key
+            refused.note(key, weakness.reason, weakness.breaks_law)
+            trial, steps = shortened(stepwise, weakness.step.without)
+        else:
+            break
+        fit = _examined(stepwise, trial)
+    return trial, steps, fit
+
+
+def _examined(stepwise: StepwiseSearch, trial: Trial) -> Fit:
+    """The fit of a trial with finite differences where derivatives miss what these see; where the
+    residual exceeds the noise, so that amounts must be known, also with the propagated noise of the
+    inputs.
+    """
+    task = stepwise.task
+    if leaves_noise_alone(trial, noise_floor_of(task, trial, stepwise.carried)):
+        return with_finite_differences(trial.fit, task.executor)
+    return estimable(trial.fit, task.input_noise, task.executor)
+
+
+def shortened(stepwise: StepwiseSearch, trial: Trial) -> tuple[Trial, list[Step]]:
+    """A trial that lacks something now, fitted sharply, and what its candidates gain."""
+    trial = stepwise.sharpened(trial)
+    return trial, [stepwise.step(trial, c) for c in trial.candidates]
+
+
+def smaller_alternative(
+    stepwise: StepwiseSearch, trial: Trial, alternatives: Sequence[Alternative]
+) -> Trial | None:
+    """Where the residual of the trial is white noise, one of its `alternatives` without a candidate
+    that explains nothing there, if its residual is white noise too; None where there is none.
+    """
+    if not stepwise.is_white(trial):
+        return None
+    for other in alternatives:
+        for candidate in other.trial.candidates:
+            if expected_gain(other.trial, candidate.vanishing) < stepwise.task.material:
+                smaller = stepwise.without(other.trial, candidate)
+                if stepwise.is_white(smaller) and len(smaller.candidates) < len(trial.candidates):
+                    return smaller
+    return None
+
+
+def ambiguous_value(
+    trial: Trial, steps: Sequence[Step], named: Mapping[str, tuple[str, ...]], floor: NoiseFloor
+) -> Step | None:
+    """A declared value that has alternatives (`named`), where the residual exceeds the noise; None
+    if there is none. It was declared as known: that it is wrong is the answer only where nothing
+    else is.
+    """
+    if leaves_noise_alone(trial, floor):
+        return None
+    known = [s for s in steps if s.candidate.is_declared_value]
+    return next((s for s in known if named[s.candidate.key]), None)
+
+
+def rejected_on_validation(task: Task, trial: Trial, steps: Sequence[Step]) -> Step | None:
+    """The candidate of a set that the validation runs reject most: they are predicted significantly
+    better without it, at 5 % over all members; None if there is none.
+    """
+    if len(steps) < 2:
+        return None
+    after = held_out_fit(task, trial)
+    gains = [held_out_gain(held_out_fit(task, s.without), after) for s in steps]
+    worst = min(range(len(steps)), key=lambda k: gains[k].chance)
+    return steps[worst] if gains[worst].is_significant(len(steps)) else None
+
+
+def simplest_alternative(
+    stepwise: StepwiseSearch,
+    chosen: Trial,
+    steps: list[Step],
+    chosen_fit: Fit,
+    alternatives: list[Alternative],
+) -> tuple[Trial, list[Step], Fit, list[Alternative]]:
+    """Of one effect and what predicts as well as it, the one with the fewest parameters, if
+    that is confirmed too; with its fit from `_examined`, `chosen_fit` of the first.
+    """
+    unchanged = chosen, steps, chosen_fit, alternatives
+    as_good = [r for r in alternatives if not r.is_within_input_noise]
+    best = min(as_good, key=lambda r: len(r.trial.fit.free), default=None)
+    if len(steps) != 1 or best is None or len(best.trial.fit.free) >= len(chosen.fit.free):
+        return unchanged
+    if len(best.trial.candidates) != 1:
+        return unchanged
+    (candidate,) = best.trial.candidates
+    fit = _examined(stepwise, best.trial)
+    step = step_of(best.trial, candidate, steps[0].without)
+    if _weakness(stepwise, best.trial, [step], fit) is not None:
+        return unchanged
+    others = [chosen, *(r.trial for r in alternatives if r is not best)]
+    return (
+        best.trial,
+        [step],
+        fit,
+        [Alternative(other, gain(best.trial, other)) for other in others],
+    )
+
+
+def _off_bounds(stepwise: StepwiseSearch, trial: Trial, fit: Fit) -> Trial | None:
+    """The trial with a candidate in the fullest form that lacks a parameter which ends at its
+    bound; None where none does, or where no form lacks it.
+    """
+    for candidate in trial.candidates:
+        bound = at_bound(fit, candidate)
+        kept = {f.name for f in candidate.free if f.name != bound}
+        lacking = [f for f in forms(stepwise.task, candidate) if {p.name for p in f.free} <= kept]
+        if bound is not None and lacking:
+            fullest = max(lacking, key=lambda form: len(form.free))
+            full = stepwise.polished(begun_in_form(stepwise, trial, candidate, fullest))
+            return simplified(stepwise, full)
+    return None
+
+
+def _weakness(
+    stepwise: StepwiseSearch, trial: Trial, steps: list[Step], fit: Fit
+) -> Weakness | None:
+    """The candidate of a trial that gains least of those that are not confirmed, and why not; None
+    where all are. What is known of the others may change once it is out.
+    """
+    floor = noise_floor_of(stepwise.task, trial, stepwise.carried)
+    quiet = leaves_noise_alone(trial, floor)
+    is_within_input_noise = replace(floor, carried=stepwise.input_noise_for(trial))
+    by_gain = sorted(steps, key=lambda s: s.gain.share)
+    refit = partial(without_run, stepwise.task, trial)
+    for step in by_gain:
+        if not stepwise.is_needed(step):
+            return Weakness(step, _too_little(step.gain, stepwise.task.material))
+        if is_within_noise_of_inputs(step.without, is_within_input_noise):
+            return Weakness(step, "without it the residual is within the noise of the inputs")
+        member = with_what_needs_it(step.candidate, trial.candidates)
+        reason = why_unconfirmed(fit, member, quiet, refit)
+        if reason is not None:
+            return Weakness(step, reason)
+        space = stepwise.proposals.space
+        if space is not None and contradicts_its_law(
+            stepwise.task, space, trial.candidates, trial.values, step.candidate
+        ):
+            return Weakness(
+                step, "its torque depends on the speed in another way than its law", breaks_law=True
+            )
+        if not quiet:
+            doubt = _doubt_beside_residual(stepwise.task, trial, step)
+            if doubt is not None:
+                return Weakness(step, doubt)
+    if not is_moved_by_inputs(stepwise.task, trial):
+        return Weakness(by_gain[0], "with it the simulated motion no longer depends on the inputs")
+    return None
+
+
+def _doubt_beside_residual(task: Task, trial: Trial, step: Step) -> str | None:
+    """Why a step cannot be named where the residual exceeds the noise, which a wrong effect may
+    imitate: the lower limit of its gain is below one half, or it reduces slow drift alone.
+    """
+    if not step.gain.is_most:
+        share, least = (100.0 * max(x, 0.0) for x in (step.gain.share, step.gain.lower))
+        return (
+            f"reduces the sum of squares by {share:.0f} % (lower 95 % limit {least:.0f} %), "
+            "too little while the residual exceeds the noise"
+        )
+    if gain_in_innovations(trial, step.without).share < task.material:
+        return "reduces slow drift alone, which other missing effects can cause as well"
+    return None
+
+
+def _too_little(earned: Gain, material: float) -> str:
+    """Why a gain is too small for a name, which requires a `material` share."""
+    if earned.share <= 0.0:
+        return "does not improve the prediction of blocks left out"
+    share = f"{100.0 * earned.share:.0f} %"
+    if earned.share < material:
+        return f"reduces the sum of squares by {share} only; {100.0 * material:g} % are required"
+    return f"reduces the sum of squares by {share}, which is not significant"

@@ -1,14 +1,10 @@
-"""Runs that nothing predicts to their end: cut into windows with starts of their own.
+"""Runs that nothing predicts to their end, cut into windows with initial states of their own.
 
-Runs of which samples are missing: where it matters what the inputs did meanwhile, a new part.
-
-Some of many windows: enough to tell what is usual, spread over the logs.
-
-Fits over ever longer windows, which lead to where whole runs, or longer windows, fit.
-
-The misfit of long runs is a staircase where friction lets go: one start of motion a sample late
-moves all that follows. A window that holds a single one tells smoothly how late it is, and longer
-ones tell the parameters apart (multiple shooting: Bock, 1983).
+The deviance of long runs is a staircase where friction breaks away: one start of motion a sample
+late moves all that follows. In a window with a single one it is smooth, and longer windows identify
+the parameters: the ends of fits over windows of growing length are the initial values for whole
+runs (multiple shooting: Bock, 1983). Runs are parted, too, where samples are missing and it matters
+what the inputs did meanwhile.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -20,14 +16,15 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.data.latency import IntArray, after_lost, parted
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.left_over import left_over
+from ptp_symbolic.numeric.diagnose.noise_floor import normalised_residual
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
     continued,
     fitted,
-    is_alike,
+    is_same_end,
 )
+from ptp_symbolic.numeric.identify.blocks import MANY_RUNS, weighted_median
 from ptp_symbolic.numeric.identify.constants import (
     CYCLES,
     ITERATIONS,
@@ -39,11 +36,9 @@ from ptp_symbolic.numeric.identify.constants import (
 )
 from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate, mean_squares
 from ptp_symbolic.numeric.identify.evidence import recorded
-from ptp_symbolic.numeric.identify.robust_loss import MANY_RUNS, weighted_median
-from ptp_symbolic.numeric.identify.run import Run, sizes, with_start
-from ptp_symbolic.numeric.identify.run_starts import has_linked, linked, starts_in_place
-from ptp_symbolic.numeric.identify.sample_averages import samples_within, thinned
-from ptp_symbolic.numeric.identify.simulations import POLISH
+from ptp_symbolic.numeric.identify.fit import has_linked, linked, starts_in_place
+from ptp_symbolic.numeric.identify.least_squares import POLISH
+from ptp_symbolic.numeric.identify.run import Run, samples_within, sizes, thinned, with_start
 from ptp_symbolic.numeric.identify.windows import (
     cut,
     cut_where_errors_grow,
@@ -101,9 +96,10 @@ def _changed_at_begin(run: Run, gaps: IntArray) -> Run:
     return replace(run, inputs=stack(signals))
 
 
-def leading(windows: tuple[Run, ...], length: float, stretch: float) -> tuple[Run, ...]:
-    """Windows of `length` s that lead a search: spread over the logs; where each tells how the next
-    one begins, in stretches of `stretch` s, and all of them where that is no longer than a window.
+def first_windows(windows: tuple[Run, ...], length: float, stretch: float) -> tuple[Run, ...]:
+    """Windows of `length` s for a first fit: spread over the logs; where each determines the
+    initial state of the next, in stretches of `stretch` s, and all of them where that is no longer
+    than a window.
     """
     if not has_linked(windows):
         return spread_over(windows, length)
@@ -115,8 +111,8 @@ def leading(windows: tuple[Run, ...], length: float, stretch: float) -> tuple[Ru
 
 
 def spread_over(windows: tuple[Run, ...], length: float) -> tuple[Run, ...]:
-    """Windows of `length` s spread over the logs, at least as many as tell what is usual, and more
-    of shorter ones, in the same time.
+    """Windows of `length` s spread over the logs, at least as many as a median needs, and more of
+    shorter ones, in the same time.
     """
     return windows[:: _apart(windows, length)]
 
@@ -128,39 +124,41 @@ def _apart(windows: Sequence[Run], length: float) -> int:
 
 def growing(task: Task, *, few: bool = False) -> list[Task]:
     """The task over windows of doubled lengths, up to 2 s, that are shorter than its runs; over all
-    of them, or a `few` that tell what is usual, in pairs where one tells how the other begins.
+    of them, or a `few`, in pairs where one determines the initial state of the other.
     """
     runs = [thinned(run, samples_within(run, SEARCH_PERIOD)) for run in task.whole]
     longest = max(float(run.time[-1] - run.time[0]) for run in task.train)
     every = {x: cut(task.model, runs, x) for x in LENGTHS[:1:-1] if x < longest}
-    windows = [leading(w, x, 2.0 * x) if few else w for x, w in every.items()]
+    windows = [first_windows(w, x, 2.0 * x) if few else w for x, w in every.items()]
     return [replace(task, train=w, robust_below=np.inf) for w in windows]
 
 
-def led_through(
+def fitted_through(
     parts: Sequence[Task], candidates: Sequence[Candidate], values: Mapping[str, float]
 ) -> Mapping[str, float]:
-    """Values to which windows lead a set from `values`, through one of `parts` after the other."""
+    """Values of a set fitted to the windows of one of `parts` after the other, from `values`."""
     for part in parts:
-        values = led(part, candidates, values).values
+        values = fitted_to_windows(part, candidates, values).values
     return values
 
 
-def led(part: Task, candidates: Sequence[Candidate], values: Mapping[str, float]) -> Trial:
+def fitted_to_windows(
+    part: Task, candidates: Sequence[Candidate], values: Mapping[str, float]
+) -> Trial:
     """A set fitted to windows from `values`."""
     trial = settled(part, fitted(part, candidates, values, None), None, brief=True)
     return continued(part, trial, POLISH, secants=WIDE_STEP)
 
 
 def settled(task: Task, trial: Trial, executor: Executor | None, *, brief: bool = False) -> Trial:
-    """The trial fitted on until some iterations more change next to nothing, the gears put in their
-    places anew each time: a window that began on the wrong side of a gap holds the others back.
-    `brief` is that of `starts_in_place`.
+    """The trial fitted on until some iterations more change next to nothing, the places of the
+    gears estimated anew each time: a window that began on the wrong side of a gap holds the others
+    back. `brief` is that of `starts_in_place`.
     """
     for _ in range(CYCLES):
         z = starts_of(trial, executor, brief=brief)
         better = continued(task, trial, ITERATIONS, executor=executor, z=z)
-        if is_alike(better, trial):
+        if is_same_end(better, trial):
             break
         trial = better
     return trial
@@ -178,7 +176,7 @@ def starts_of(trial: Trial, executor: Executor | None, *, brief: bool = False) -
 
 
 def shares_of_usual(trial: Trial) -> FloatArray:
-    """Mean square [n] that every run of a trial leaves, in those of the usual one."""
+    """Mean square residual [n] of every run of a trial, over their median."""
     square = _squares(trial)
     return square / max(_usual_square(trial, square), 1e-300)
 
@@ -213,7 +211,7 @@ def in_windows(task: Task, declared: Trial) -> Task:
 
 
 def validation_in_windows(task: Task, declared: Trial) -> Task:
-    """The task with its validation runs cut where training runs would be, whatever they leave."""
+    """The task with its validation runs cut as training runs would be, whatever their residual."""
     model, runs = task.model, task.validate
     p, starts = model.parameter_vector(declared.values), [run.guess for run in runs]
     left = np.zeros((len(runs), len(task.train[0].signals)))
@@ -234,17 +232,17 @@ def parted_task(task: Task, trial: Trial) -> Task:
     return _in_parts(task, trial, parts_of, "runs are parted where samples are missing")
 
 
-def takes_away_most(short: Trial, trial: Trial) -> bool:
-    """Whether a trial in windows leaves less than half of the mean square of one over whole runs:
-    where it does not, something else is missing, which windows hide.
+def more_than_halves(short: Trial, trial: Trial) -> bool:
+    """Whether the mean square residual of a trial in windows is less than half of that over whole
+    runs: where it is not, something else is missing, which windows hide.
     """
-    left, whole = (float(np.sum(left_over(t.fit) ** 2)) for t in (short, trial))
+    left, whole = (float(np.sum(normalised_residual(t.fit) ** 2)) for t in (short, trial))
     return left <= (1.0 - MOST) * whole
 
 
 def in_windows_of(task: Task, trial: Trial) -> Task:
     """The task with training and validation runs cut into windows where the model of a trial
-    multiplies an error of the start tenfold (see `window_length`, which asks the same of the
+    multiplies an error of the start tenfold (see `window_length`, which is the same test of the
     declared model): a machine that cogs, or leans, runs on from the edge of a valley into one or
     the other, and its fit has an end for each of them.
     """

@@ -1,53 +1,82 @@
-"""By how much a larger model predicts better: leave-one-block-out losses.
+"""By how much a larger model predicts better: leave-one-block-out losses, and validation runs.
 
 Every block of the training runs is left out in turn and predicted by the others (see
-`identify.blocks`); the losses of two models on the same blocks are compared in pairs.
+`identify.blocks`); the losses of two models on the same blocks are compared in pairs. The
+validation runs are compared with their own noise, with values in the joint confidence region.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from ptp_symbolic.numeric.diagnose.trial import Trial
+from ptp_symbolic.numeric.diagnose.noise_floor import NoiseFloor
+from ptp_symbolic.numeric.diagnose.trial import (
+    SHARP,
+    Task,
+    Trial,
+    tolerance_for,
+)
 from ptp_symbolic.numeric.identify.blocks import (
     ELSEWHERE,
+    MANY_RUNS,
     SINGULAR,
     block_labels,
     block_length,
     block_squares,
     bootstrap_share,
     degrees_of_freedom,
+    huber_loss,
+    huber_root,
     jackknife_covariance,
     leave_blocks_out,
     longest_block,
+    trimmed_mean,
+    weighted_median,
     without_outliers,
 )
 from ptp_symbolic.numeric.identify.constants import (
+    ABOVE_NOISE,
+    CYCLES,
     FALSE_ALARM,
     FEWEST_BLOCKS,
+    MATERIAL,
     MOST,
+    NEARBY,
     NOTHING,
+    REPEATS,
+    ROUGH,
+    SEED,
     TUNING,
+    UNALIKE,
 )
 from ptp_symbolic.numeric.identify.coordinates import to_search
+from ptp_symbolic.numeric.identify.evaluate import mean_squares
 from ptp_symbolic.numeric.identify.evidence import recorded
-from ptp_symbolic.numeric.identify.fit import Fit
-from ptp_symbolic.numeric.identify.intervals import chance_of, project_out
+from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
+from ptp_symbolic.numeric.identify.intervals import (
+    chance_of,
+    closest_in_ball,
+    joint_region,
+    project_out,
+    reaches,
+    with_finite_differences,
+)
+from ptp_symbolic.numeric.identify.least_squares import BIGGEST, POLISH, Effort
 from ptp_symbolic.numeric.identify.noise import innovations, prediction_error_filter
-from ptp_symbolic.numeric.identify.robust_loss import huber_loss, weighted_median
-from ptp_symbolic.numeric.identify.run import Run, by_log
+from ptp_symbolic.numeric.identify.run import Run, by_log, by_source, sizes
 
-FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
+FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
 class Gain:
-    """Share of the predictive loss of the smaller model that the larger one takes away, its 95 %
+    """Share by which the larger model reduces the predictive loss of the smaller one, its 95 %
     interval, its t statistic with `degrees` of freedom over blocks, and the probability of ranks of
     the blocks like these, or better ones, where there is no gain (see `compared`).
     """
@@ -66,10 +95,10 @@ class Gain:
 
     @property
     def is_most(self) -> bool:
-        """Whether surely, at 95 %, more of the loss is taken away than is left."""
+        """Whether the lower 95 % limit of the share is above one half."""
         return self.lower > MOST
 
-    def is_clear(self, tests: int) -> bool:
+    def is_significant(self, tests: int) -> bool:
         """Whether the gain is above zero at 5 % over so many `tests` (Bonferroni)."""
         return self.chance < FALSE_ALARM / max(tests, 1)
 
@@ -87,8 +116,8 @@ def gain(larger: Trial, smaller: Trial) -> Gain:
 
 @recorded(Gain)
 def gain_in_innovations(larger: Trial, smaller: Trial) -> Gain:
-    """The same where what `larger` leaves is coloured: in its innovations, each model one step of
-    generalized least squares from its fit.
+    """The same where the residual of `larger` is autocorrelated: in its innovations, each model one
+    step of generalized least squares from its fit.
     """
     runs = larger.fit.runs
     signals = runs[0].measured.shape[1]
@@ -127,8 +156,8 @@ def _gain(
 ) -> Gain:
     """The gain of the first of two models, given by residuals and Jacobians of the same runs.
 
-    Signals count by what the first leaves in them, or by the mean square `noise` [signals] of
-    theirs where it leaves less: the angle of an axis that rests is told to no better.
+    Signals are scaled by the median square of the first, or by their mean square `noise` [signals]
+    where that is larger: the angle of an axis that rests is known to no better.
     """
     signals = runs[0].measured.shape[1]
     difference = [
@@ -151,8 +180,8 @@ def _gain(
 def compared(larger: FloatArray, smaller: FloatArray) -> Gain:
     """The gain from the losses `larger` and `smaller` [b] of the same blocks by two models.
 
-    By the t statistic a gain is not clear where most of it lies in few blocks, however many gain
-    besides; by signed ranks it is (Wilcoxon, 1945).
+    By the t statistic a gain is not significant where most of it lies in few blocks, however many
+    gain besides; by signed ranks it is (Wilcoxon, 1945).
     """
     taken = smaller - larger
     share, lower, upper = bootstrap_share(taken, smaller, 1.0 - FALSE_ALARM)
@@ -215,3 +244,128 @@ def _predicted_squares(
     prior = float(np.mean(residual**2))  # without the block no parameter moves by more than a unit
     left = leave_blocks_out(residual, jacobian, np.repeat(label, signals), prior)
     return block_squares(left.predicted, label, signals), left.leverage <= 1.0 - ELSEWHERE
+
+
+def is_validated(held_out: Gain, quiet: bool, unusual: bool, material: float) -> bool:
+    """Whether what the training runs named holds on the validation runs: their sum of squares falls
+    by a `material` share. Where their residual exceeds the noise (not `quiet`), a wrong effect may
+    imitate a missing one, so that it has to fall by half, as on training runs.
+
+    Where all may be noise, but the residual of training runs is `unusual`, the noise is large by
+    chance, or an effect is missing. Any effect follows a part of either, for seconds, in blocks
+    left out as well; the validation runs have noise of their own, and must gain significantly.
+    """
+    if not quiet:
+        return held_out.share >= MOST
+    return held_out.share >= material and (not unusual or held_out.is_significant(1))
+
+
+@recorded()
+def left_by_best_values(
+    after: Fit, estimated: Fit, level: FloatArray, executor: Executor | None = None
+) -> FloatArray:
+    """Mean square residuals [runs, ny] of the validation runs `after`, in units of the noise, with
+    other values: those in the joint confidence region of the `estimated` ones that suit all runs
+    together best, to first order. Starts are free. Signals count by their noise `level` [ny], runs
+    that are far worse than usual count less (Huber).
+
+    The residual of a complete model at its true values is noise, and the region holds those. That
+    of an incomplete one is rarely of the form of a change of its values.
+    """
+    squares = mean_squares(after.evaluations, after.runs)
+    moved = replace(after, free=estimated.free)
+    if estimated.free and not after.failed:
+        moved = with_finite_differences(moved, executor, reaches(estimated))
+    if moved.failed or not all(np.all(np.isfinite(e.by_parameter)) for e in moved.evaluations):
+        return squares
+    region = joint_region(estimated) if estimated.free else np.zeros((0, 0))
+    size = sizes(after.runs)
+    scaled = []  # residuals and what the region carries there, over the noise of their signals
+    for run, e in moved.pairs():
+        noise = np.tile(level, len(run.time))[:, None]
+        residual = project_out(e.residual[:, None], e.by_start) / noise
+        scaled.append((residual[:, 0], project_out(e.by_parameter, e.by_start) @ region / noise))
+    left = [residual for residual, _ in scaled]
+    for _ in range(2 * CYCLES):
+        square = np.array([np.mean(r**2) for r in left])
+        usual = max(float(weighted_median(square[:, None], size)[0]), 1.0)
+        weighted = list(zip(huber_root(square, usual), scaled, strict=True))
+        columns = np.vstack([root * carried for root, (_, carried) in weighted])
+        target = -np.concatenate([root * residual for root, (residual, _) in weighted])
+        shift = closest_in_ball(columns, target)
+        left = [residual + carried @ shift for residual, carried in scaled]
+    tables = [r.reshape(run.measured.shape) for r, run in zip(left, after.runs, strict=True)]
+    return np.array([np.mean((table * level) ** 2, axis=0) for table in tables])
+
+
+def is_noise_alone(left: FloatArray, size: FloatArray, floor: NoiseFloor, trained: Fit) -> bool:
+    """Whether validation runs of `size` [runs] samples show no more than noise, by their mean
+    square residuals `left` [runs, ny] (see `left_by_best_values`). The median of the runs counts,
+    for one that sticks at another sample than it did is off by counts, but none may be further off
+    than what is near the noise floor. Of many windows all count but the worst, a MATERIAL share of
+    the samples, and their residuals may not be larger than those of the training windows. Windows
+    below the usual noise count as equal in that: those at rest, rounded to a count that they stay
+    at, have smaller residuals, and show no lack in those that move.
+    """
+    squares = left / (ABOVE_NOISE * floor.most) ** 2
+    many = len(left) >= MANY_RUNS
+    usual = trimmed_mean(squares, size, MATERIAL) if many else weighted_median(squares, size)
+    if not (np.all(usual <= 1.0) and (many or np.all(squares <= NEARBY**2))):
+        return False
+    own = mean_squares(trained.evaluations, trained.runs)
+    if not many or len(own) < MANY_RUNS:
+        return True
+    quiet = (ABOVE_NOISE * floor.level) ** 2
+    pairs = zip(np.maximum(left, quiet).T, np.maximum(own, quiet).T, strict=True)
+    return all(chance_of_larger(ours, theirs) > UNALIKE for ours, theirs in pairs)
+
+
+def chance_of_larger(ours: FloatArray, theirs: FloatArray) -> float:
+    """The chance of ranks as high as those of `ours` [m] among `theirs` [n] if all are alike (Mann
+    and Whitney, 1947), by permutation: where most are the same, their sum is far from normal. Of
+    the draws, eight go as far where the chance is UNALIKE.
+    """
+    ranks = stats.rankdata(np.concatenate([ours, theirs]))
+    rng, count = np.random.default_rng(SEED), round(REPEATS / UNALIKE)
+    sums = [rng.permutation(ranks)[: len(ours)].sum() for _ in range(count)]
+    return (1.0 + np.count_nonzero(sums >= ranks[: len(ours)].sum())) / (1.0 + count)
+
+
+def held_out_fit(task: Task, trial: Trial) -> Fit:
+    """The validation runs by the model of a trial, nothing but their start unknowns fitted."""
+    return simulated_freely(task, task.validate, trial.values)
+
+
+def simulated_freely(task: Task, runs: Sequence[Run], values: Mapping[str, float]) -> Fit:
+    """Runs simulated with `values` of all parameters, nothing but their start unknowns fitted."""
+    effort = Effort(POLISH, MATERIAL * ROUGH, tolerance_for(task, SHARP))
+    return fit_parameters(task.model, runs, (), dict(values), None, effort, task.executor)
+
+
+def held_out_gain(after: Fit, before: Fit) -> Gain:
+    """The share by which the mean square error of validation runs or windows falls (Huber's loss:
+    those far worse than usual count linearly). Windows of one log count together as long as what
+    they gain is correlated (see `block_length`).
+    """
+    size = sizes(after.runs)
+    squares = [mean_squares(fit.evaluations, fit.runs) for fit in (after, before)]
+    usual = np.min([weighted_median(s, size) for s in squares], axis=0)
+    tuning = TUNING**2 * np.maximum(usual, 1.0)
+    losses = [size * huber_loss(np.minimum(s, BIGGEST), tuning).sum(axis=1) for s in squares]
+    blocks = _independent(after.runs, losses[1] - losses[0])
+    return compared(*[np.asarray(np.bincount(blocks, loss), dtype=np.float64) for loss in losses])
+
+
+def _independent(runs: Sequence[Run], taken: FloatArray) -> NDArray[np.int64]:
+    """The block [runs] of every run or window: those of one log together as long as what is `taken`
+    [runs] from them is correlated, however few blocks that leaves.
+    """
+    groups = by_source(runs)
+    mean = taken / sizes(runs)
+    length = block_length([mean[group] for group in groups])
+    label, first = np.zeros(len(runs), dtype=np.int64), 0
+    for group in groups:
+        count = max(1, round(len(group) / length))
+        label[group] = first + np.arange(len(group)) * count // len(group)
+        first += count
+    return label

@@ -1,4 +1,4 @@
-"""Candidates that the logs cannot tell from one that was chosen.
+"""Candidates that these logs do not distinguish from one that was chosen.
 
 An effect of the chosen set is compared, at the fit, with what every other candidate would change in
 the outputs, both projected off what the declared parameters and the other effects can follow
@@ -19,21 +19,26 @@ from ptp_symbolic.numeric.diagnose.candidates import (
     with_what_needs_it,
     without_member,
 )
-from ptp_symbolic.numeric.diagnose.floor import Floor, floor_of, leaves_noise_of_inputs
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain
-from ptp_symbolic.numeric.diagnose.linear import (
+from ptp_symbolic.numeric.diagnose.noise_floor import (
+    NoiseFloor,
+    is_within_noise_of_inputs,
+    noise_floor_of,
+)
+from ptp_symbolic.numeric.diagnose.proposals import ProposedSets
+from ptp_symbolic.numeric.diagnose.refits import in_place, is_near_noise_floor, restarted_fit
+from ptp_symbolic.numeric.diagnose.responses import (
+    Columns,
     canonical_correlation,
     effect_of,
+    least,
     projected_off,
+    response_columns,
     stacked_jacobian,
     stacked_residual,
 )
-from ptp_symbolic.numeric.diagnose.proposals import Proposals
-from ptp_symbolic.numeric.diagnose.refits import is_near_floor, started_anew
-from ptp_symbolic.numeric.diagnose.responses import Columns, least, response_columns
-from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.signatures import Signature
-from ptp_symbolic.numeric.diagnose.starts import in_place
+from ptp_symbolic.numeric.diagnose.stepwise import StepwiseSearch
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
@@ -51,16 +56,17 @@ FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Rival:
-    """A set that may stand in the place of the chosen one; `gain` is that of the chosen over it.
+class Alternative:
+    """A set that these logs do not distinguish from the chosen one; `gain` is that of the chosen
+    one over it.
 
-    It predicts as well, unless it is `excused`: the chosen one predicts better, and the noise of
-    the inputs usually leaves as much as it does.
+    It predicts as well, or it `is_within_input_noise`: the chosen one predicts better, but the
+    residual of this one is within the propagated noise of the inputs.
     """
 
     trial: Trial
     gain: Gain
-    excused: bool = False
+    is_within_input_noise: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,17 +78,17 @@ class Similarity:
     values: dict[str, float]
 
 
-def rivals(seeker: Seeker, chosen: Trial, fit: Fit) -> list[Rival]:
-    """Sets as large as the chosen one that these logs do not refute (`unrefuted`), those that the
-    search has begun already among them. `fit` is the fit of the chosen one, from
+def refitted_alternatives(stepwise: StepwiseSearch, chosen: Trial, fit: Fit) -> list[Alternative]:
+    """Sets as large as the chosen one that these logs do not refute (`not_refuted`), those that the
+    search has started already among them. `fit` is the fit of the chosen one, from
     `with_finite_differences`.
 
-    A few iterations tell which come near the chosen set. A set that it cannot be told from by its
-    response is fitted to its end where they come near the floor, and where the chosen one leaves
-    more than noise, however far it is till then.
+    A few iterations show which come near the chosen set. A set with an indistinguishable response
+    is fitted to its end where these come near the noise floor, and where the residual of the chosen
+    one exceeds the noise, however far it is till then.
     """
-    task = seeker.task
-    near = [t for t in ranked(seeker.tried.others) if _comes_near(t, chosen)]
+    task = stepwise.task
+    near = [t for t in ranked(stepwise.tried.others) if _comes_near(t, chosen)]
     tried = {t.keys for t in near}
     begun: list[Trial] = []
     resembling: set[tuple[str, ...]] = set()
@@ -93,11 +99,11 @@ def rivals(seeker: Seeker, chosen: Trial, fit: Fit) -> list[Rival]:
         begun += [
             fitted(task, instead(s.candidate), s.values, chosen.fit.z, 0, fit) for s in similar
         ]
-        along = alike_along_motion(seeker.proposals, chosen, member)
+        along = alike_along_motion(stepwise.proposals, chosen, member)
         wanted = {c.key: c for c in (*(s.candidate for s in similar), *along)}
         for candidate in wanted.values():
             if keys_of(instead(candidate)) not in tried:
-                begun += in_place(task, seeker.proposals, instead(candidate), chosen)
+                begun += in_place(task, stepwise.proposals, instead(candidate), chosen)
         resembling |= {keys_of(instead(s.candidate)) for s in similar}
     if begun:
         task.progress(f"refitting {len(begun)} sets that resemble the chosen one")
@@ -108,26 +114,30 @@ def rivals(seeker: Seeker, chosen: Trial, fit: Fit) -> list[Rival]:
     found = []
     for trial in best.values():
         resembles = trial.keys in resembling
-        if resembles and not seeker.is_at_noise(chosen):
-            found.append(started_anew(task, seeker.polished(trial), seeker.carried))
+        if resembles and not stepwise.is_white(chosen):
+            found.append(restarted_fit(task, stepwise.polished(trial), stepwise.carried))
         elif gain(chosen, trial).share < 1.0 - task.material or (
-            resembles and is_near_floor(trial)
+            resembles and is_near_noise_floor(trial)
         ):
-            found.append(seeker.polished(trial))
-    compared = [Rival(trial, gain(chosen, trial)) for trial in found]
-    return unrefuted(compared, floor_of(task, chosen, seeker.excusing(chosen)), task.material)
+            found.append(stepwise.polished(trial))
+    compared = [Alternative(trial, gain(chosen, trial)) for trial in found]
+    return not_refuted(
+        compared, noise_floor_of(task, chosen, stepwise.input_noise_for(chosen)), task.material
+    )
 
 
-def unrefuted(found: Sequence[Rival], floor: Floor, material: float) -> list[Rival]:
-    """Those over which the chosen set does not predict better by a `material` share, clearly so;
-    and those that leave no more than the noise of the inputs usually does: that would be left if
-    they were true, and another set may follow a part of it.
+def not_refuted(
+    found: Sequence[Alternative], floor: NoiseFloor, material: float
+) -> list[Alternative]:
+    """Those over which the chosen set has no material and significant gain; and those whose
+    residual is within the usual propagated noise of the inputs: it would be as large if they were
+    true, and another set may follow a part of it.
     """
-    worse = [is_clearly_more(rival.gain, len(found), material) for rival in found]
+    worse = [is_materially_better(other.gain, len(found), material) for other in found]
     return [
-        replace(rival, excused=is_worse)
-        for rival, is_worse in zip(found, worse, strict=True)
-        if not is_worse or leaves_noise_of_inputs(rival.trial, floor)
+        replace(other, is_within_input_noise=is_worse)
+        for other, is_worse in zip(found, worse, strict=True)
+        if not is_worse or is_within_noise_of_inputs(other.trial, floor)
     ]
 
 
@@ -140,23 +150,27 @@ def _comes_near(other: Trial, chosen: Trial) -> bool:
     return bool(np.isfinite(other.fit.cost)) and gain(chosen, other).share < MOST
 
 
-def is_clearly_more(earned: Gain, tests: int, material: float) -> bool:
-    """Whether one set predicts better than another by a `material` share, clearly so over so many
-    `tests`.
+def is_materially_better(earned: Gain, tests: int, material: float) -> bool:
+    """Whether one set predicts better than another by a `material` share, significantly over so
+    many `tests`.
     """
-    return earned.share >= material and earned.is_clear(tests)
+    return earned.share >= material and earned.is_significant(tests)
 
 
-def overtaking(chosen: Trial, found: Sequence[Rival], material: float) -> Trial | None:
-    """The best of the rivals that predict clearly better than the chosen set and by a `material`
-    share; None if none does.
+def better_alternative(
+    chosen: Trial, found: Sequence[Alternative], material: float
+) -> Trial | None:
+    """The best of the alternatives that predict significantly better than the chosen set, by a
+    `material` share; None if none does.
     """
     tests = len(found)
-    better = [r.trial for r in found if is_clearly_more(gain(r.trial, chosen), tests, material)]
+    better = [
+        r.trial for r in found if is_materially_better(gain(r.trial, chosen), tests, material)
+    ]
     return ranked(better)[0] if better else None
 
 
-def alike_along_motion(found: Proposals, chosen: Trial, member: Candidate) -> list[Candidate]:
+def alike_along_motion(found: ProposedSets, chosen: Trial, member: Candidate) -> list[Candidate]:
     """Candidates whose signature correlates above 1 - MATERIAL with that of `member`, as it is
     fitted, apart from what the declared parameters and the other members can follow; best first.
     """
@@ -197,13 +211,12 @@ def _nearest(signature: Signature, chosen: Trial) -> tuple[FloatArray, ...]:
     return signature.slopes[int(np.argmin(far))]
 
 
-def confusable(chosen: Trial, found: Sequence[Rival]) -> dict[str, tuple[str, ...]]:
-    """For every key of the chosen set the keys that may stand in its place."""
+def confusable(chosen: Trial, found: Sequence[Alternative]) -> dict[str, tuple[str, ...]]:
+    """For every key of the chosen set the keys of its alternatives."""
     named: dict[str, set[str]] = {key: set() for key in chosen.keys}
-    for rival in found:
-        other = set(rival.trial.keys) - set(chosen.keys)
-        for key in set(chosen.keys) - set(rival.trial.keys):
-            named[key] |= other
+    for other in found:
+        for key in set(chosen.keys) - set(other.trial.keys):
+            named[key] |= set(other.trial.keys) - set(chosen.keys)
     return {key: tuple(sorted(keys)) for key, keys in named.items()}
 
 
@@ -275,7 +288,7 @@ def _instead(
     away: FloatArray,
     found: Columns,
 ) -> dict[str, float]:
-    """Values of all parameters where `found` takes up the `residual` of the fit without a
+    """Values of all parameters at which `found` explains the `residual` of the fit without a
     member.
     """
     amounts, _ = least(residual, away, found)

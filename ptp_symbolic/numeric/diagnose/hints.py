@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import signal, stats
 
-from ptp_symbolic.numeric.diagnose.linear import projected_off
 from ptp_symbolic.numeric.diagnose.remainder import Looked, change_of, long_run, trimmed
+from ptp_symbolic.numeric.diagnose.responses import projected_off
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.constants import (
     CYCLES,

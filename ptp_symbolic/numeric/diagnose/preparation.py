@@ -1,33 +1,54 @@
-"""What is settled before a diagnosis: candidates, windows, noise.
+"""What is settled before a diagnosis: candidates, windows, noise; and how small a parameter or an
+effect these logs can show, predicted at the declared start values.
 
-Inputs that seem to act the other way round: a motor, or a sensor, wired with its sign turned.
+The prediction takes the declared model for right and the noise for white: model errors hide more.
+An effect is simulated at a small amount; its response, projected off what the free parameters and
+the initial states of the runs can follow, must stand out of the noise, and hold the share of the
+squared error below which nothing is named.
 """
 
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.diagnose.candidates import find_candidates, vanished, within_reach
-from ptp_symbolic.numeric.diagnose.cut_runs import leading, spread_over, takes_away_most
-from ptp_symbolic.numeric.diagnose.declared_rows import declared_start, equation_space, first_fit
-from ptp_symbolic.numeric.diagnose.refits import is_near_floor
+from ptp_symbolic.numeric.diagnose.candidates import (
+    Candidate,
+    find_candidates,
+    vanished,
+    within_reach,
+)
+from ptp_symbolic.numeric.diagnose.cut_runs import first_windows, more_than_halves, spread_over
+from ptp_symbolic.numeric.diagnose.proposals import declared_start, equation_space, first_fit
+from ptp_symbolic.numeric.diagnose.refits import is_near_noise_floor
+from ptp_symbolic.numeric.diagnose.responses import (
+    projected_off,
+    response_columns,
+    stacked_jacobian,
+)
 from ptp_symbolic.numeric.diagnose.trial import Progress, Task, Trial, fitted
 from ptp_symbolic.numeric.identify.constants import (
+    FALSE_ALARM,
     FORGOTTEN,
     LEAST_START,
+    MOST,
+    NOTHING,
+    REACH,
     SEARCH_PERIOD,
     SHORT,
 )
-from ptp_symbolic.numeric.identify.coordinates import FreeParameter
-from ptp_symbolic.numeric.identify.run import Run, with_inputs
-from ptp_symbolic.numeric.identify.sample_averages import samples_within, thinned
-from ptp_symbolic.numeric.identify.simulations import POLISH, all_values_at_start
+from ptp_symbolic.numeric.identify.coordinates import FreeParameter, slopes, to_search
+from ptp_symbolic.numeric.identify.evidence import Allowance
+from ptp_symbolic.numeric.identify.least_squares import POLISH, all_values_at_start
+from ptp_symbolic.numeric.identify.run import Run, samples_within, thinned, with_inputs
 from ptp_symbolic.numeric.identify.windows import cut, window_length
-from ptp_symbolic.numeric.identify.work import Allowance
 from ptp_symbolic.numeric.runtime.model import Model
+
+FloatArray = NDArray[np.float64]
 
 
 def task_of(
@@ -74,7 +95,7 @@ def task_of(
         train,
         pieces,
         pieces,
-        tuple(leading(w, x, SHORT) for x, w in windows.items()) if length is None else (),
+        tuple(first_windows(w, x, SHORT) for x, w in windows.items()) if length is None else (),
         spread_over(windows[SHORT], SHORT) if length is None else spread_over(pieces, length),
         cut(model, validate, length),
         free,
@@ -126,15 +147,15 @@ def _finest_angle(runs: Sequence[Run]) -> float:
 DRIVING = ("V", "N m", "N", "A")  # units of inputs that drive an axis
 
 
-def turned_inputs(task: Task, declared: Trial) -> tuple[str, ...]:
-    """A sentence for every driving input with which, its sign turned, the declared model fits the
-    training runs so much better that most of what the fit `declared` leaves is gone.
+def inverted_inputs(task: Task, declared: Trial) -> tuple[str, ...]:
+    """A sentence for every driving input with whose sign inverted the declared model more than
+    halves the sum of squares of the fit `declared`.
     """
-    if is_near_floor(declared):
+    if is_near_noise_floor(declared):
         return ()
     found = []
     for k, name in enumerate(task.model.input_names):
-        if task.model.units[name] in DRIVING and takes_away_most(_turned(task, k), declared):
+        if task.model.units[name] in DRIVING and more_than_halves(_inverted(task, k), declared):
             found.append(
                 f"The declared model fits far better with the sign of '{name}' inverted: one of"
                 " motor and sensor is wired the other way round; give one of their signals a"
@@ -143,8 +164,10 @@ def turned_inputs(task: Task, declared: Trial) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _turned(task: Task, number: int) -> Trial:
-    """The declared model fitted to the training runs with an input turned, begun at its rows."""
+def _inverted(task: Task, number: int) -> Trial:
+    """The declared model fitted to the training runs with the sign of an input inverted, started at
+    the values of its rows.
+    """
 
     def turned(run: Run) -> Run:
         sign = np.ones(run.held_inputs.shape[1])
@@ -157,3 +180,77 @@ def _turned(task: Task, number: int) -> Trial:
     space = equation_space(part, start)
     values = start if space is None else first_fit(part, space, start)
     return fitted(part, (), values, None, POLISH, executor=part.executor)
+
+
+# Standard deviations, of either sign, with which 95 % are found at 5 % of false alarms.
+SEEN = float(np.sum(stats.norm.isf([FALSE_ALARM, MOST * FALSE_ALARM])))
+
+
+@dataclass(frozen=True)
+class Visible:
+    """A parameter, the `effect` that it switches on (None: declared and free), and the smallest
+    amount in its unit that the logs show; infinite where they show none. Of a limit, such as a
+    largest voltage, it is the `largest` that shows, and NaN where none does.
+    """
+
+    effect: str | None
+    parameter: str
+    smallest: float
+    largest: float | None = None
+
+
+def visible_amounts(task: Task, start: Trial) -> list[Visible]:
+    """Smallest visible change of every free parameter, and amount of every effect that is searched
+    for in its simplest form, in their units, at `start`, the declared model with its Jacobians.
+    """
+    declared = stacked_jacobian(start.fit)
+    units = np.abs(slopes(start.fit.free, to_search(start.fit.free, start.fit.values)))
+    found = [
+        Visible(None, f.name, _smallest(declared[:, k] / units[k], np.delete(declared, k, axis=1)))
+        for k, f in enumerate(start.fit.free)
+    ]
+    simplest: dict[str, Candidate] = {}
+    for candidate in sorted(task.candidates, key=lambda c: len(c.free)):
+        if not candidate.is_declared_value:
+            simplest.setdefault(candidate.key, candidate)
+    most = REACH * float(np.sqrt(len(declared)))
+    named = max(SEEN, float(np.sqrt(task.material / (1.0 - task.material) * len(declared))))
+
+    def amounts(candidate: Candidate) -> list[Visible]:
+        columns = response_columns(task, start, candidate, candidate.shapes[0], most)
+        seen = {} if columns is None else dict(zip(columns.free, columns.table.T, strict=True))
+        rows = []
+        for f in candidate.defining:
+            smallest = _smallest(seen[f], declared, named) if f in seen else float("inf")
+            largest = None
+            if candidate.is_limit(f) and f.logarithmic:
+                at = np.nan if columns is None else columns.limits.get(f.name, np.nan)
+                largest = largest_limit(candidate.met_at(f), at, f.upper, smallest)
+                smallest = float("inf")
+            rows.append(Visible(candidate.key, f.name, smallest, largest))
+        return rows
+
+    amount = f"{len(simplest)} effects, each simulated at several amounts"
+    for done, rows in enumerate(task.executor.map(amounts, simplest.values())):
+        if done % max(len(simplest) // 4, 1) == 0:
+            task.progress(f"predicting what {len(task.train)} runs can show: {done} of {amount}")
+        found += rows
+    return found
+
+
+def largest_limit(met: float, at: float, upper: float, smallest: float) -> float:
+    """The largest limit that shows, of a signal that reaches `met`: the response to a limit `at`
+    some value stands out of the noise at the amount `smallest`, were it counted from `upper`; it
+    grows with what is cut off, met - at. NaN where no limit above zero shows.
+    """
+    cut = (met - at) * smallest / (upper - at)
+    return float(met - cut) if cut < met else float("nan")
+
+
+def _smallest(column: FloatArray, others: FloatArray, by: float = SEEN) -> float:
+    """The amount whose response, `column` [n] per unit, stands out of unit noise `by` so many
+    standard deviations beside what `others` [n, k] can follow.
+    """
+    size = float(np.linalg.norm(projected_off(column[:, None], others)))
+    least = np.sqrt(NOTHING) * float(np.linalg.norm(column))
+    return by / size if size > least else float("inf")

@@ -1,10 +1,8 @@
-"""What the equation space proposes: where to start the declared model, and which sets to try.
+"""What the weak-form regression proposes: initial values of the declared model, and sets to try.
 
-Where a candidate begins that lets an input act late.
-
-A current that follows its voltage within a sample tells of a delay only how many samples it lasts:
-between whole numbers of them the rows stay as they are, and no difference quotient at a small delay
-leads to a large one. Whole numbers are compared instead.
+A current that follows its voltage within a sample shows a delay in whole samples only: between them
+the rows do not change, and no difference quotient at a small delay points to a large one. Whole
+numbers are compared instead.
 """
 
 import itertools
@@ -17,15 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
-from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.declared_rows import (
-    declared_start,
-    equation_space,
-    first_fit,
-    possible,
-)
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.diagnose.candidates import FAR_OFF, Candidate
 from ptp_symbolic.numeric.diagnose.regression import (
     Regression,
+    Subset,
+    is_no_worse,
+    lines,
+    ranked_subsets,
     regression,
     reweighted,
 )
@@ -37,37 +34,119 @@ from ptp_symbolic.numeric.diagnose.signatures import (
     rows_around,
     signatures,
 )
-from ptp_symbolic.numeric.diagnose.subsets import Subset, is_no_worse, lines, ranked_subsets
 from ptp_symbolic.numeric.diagnose.trial import Task, restarted
 from ptp_symbolic.numeric.identify.constants import (
     CYCLES,
+    DECLARED_AMOUNT,
     DEVIATIONS,
+    FAR,
+    ITERATIONS,
     LARGEST,
     LITTLE,
     REFINEMENTS,
     STEP,
     TRIED,
 )
-from ptp_symbolic.numeric.identify.coordinates import FreeParameter
+from ptp_symbolic.numeric.identify.coordinates import FreeParameter, nearest_possible, to_search
 from ptp_symbolic.numeric.identify.equation_fit import (
     Linearised,
     blocks_in_time,
     fit_equations,
     linearised,
+    robust_scale,
 )
-from ptp_symbolic.numeric.identify.equation_space import EquationSpace
-from ptp_symbolic.numeric.identify.sample_averages import usual_period
+from ptp_symbolic.numeric.identify.equation_space import EquationSpace, prepare_equation_space
+from ptp_symbolic.numeric.identify.least_squares import all_values, all_values_at_start
+from ptp_symbolic.numeric.identify.run import Run, usual_period
 
 FloatArray = NDArray[np.float64]
+
+
+def declared_start(task: Task) -> dict[str, float]:
+    """All parameters at the declared starts, every candidate at its vanishing value."""
+    return {**task.fixed, **all_values_at_start(task.free)}
+
+
+def equation_space(
+    task: Task,
+    start: Mapping[str, float],
+    runs: Sequence[Run] | None = None,
+    shortest: bool = False,
+    half_width: float | None = None,
+) -> EquationSpace | None:
+    """The equation space of the whole training runs, or of other `runs`, in windows as short as
+    noise allows with `shortest`, or of a `half_width` in s. None where angles are missing, states
+    are sampled or switched, or rows are too few for the free parameters.
+    """
+    vector = task.model.parameter_vector
+    varied = dict(start)
+    for candidate in task.candidates:
+        for f in candidate.free:
+            amount = f.start
+            if candidate.is_declared_value:
+                amount = min((1.0 + DECLARED_AMOUNT) * f.start, f.upper)
+            varied.update(dict.fromkeys(f.names, amount))
+    others = []
+    for f in task.free:
+        for factor in (FAR_OFF, 1.0 / FAR_OFF):
+            value = float(np.clip(f.start * factor, f.lower, f.upper))
+            others.append(vector({**start, **dict.fromkeys(f.names, value)}))
+    try:
+        space = prepare_equation_space(
+            task.model,
+            task.whole if runs is None else runs,
+            vector(dict(start)),
+            others,
+            vector(varied),
+            shortest,
+            half_width,
+        )
+    except InputError:
+        return None
+    total = sum(int(rows.kept.sum()) for rows in space.rows_of)
+    return space if total > 4 * (len(task.free) + 1) else None
+
+
+def possible(
+    task: Task, free: Sequence[FreeParameter], values: Mapping[str, float]
+) -> dict[str, float]:
+    """`values` with `free` projected onto the boundary of every relation of the machine that they
+    break, as a fit does with its start.
+    """
+
+    def parameters(phi: FloatArray) -> FloatArray:
+        return task.model.parameter_vector({**values, **all_values(free, phi)})
+
+    phi = to_search(free, values)
+    found = nearest_possible(task.model, free, parameters, phi)
+    return dict(values) if found is phi else {**values, **all_values(free, found)}
+
+
+def first_fit(task: Task, space: EquationSpace, start: Mapping[str, float]) -> dict[str, float]:
+    """All parameters of the declared model fitted to its rows, those left out in turn in which a
+    joint has left the face of its gap by far more than the rows scatter.
+    """
+    first = fit_equations(space, task.free, start, ITERATIONS, task.executor)
+    values = possible(task, task.free, {**start, **first})
+    for _ in range(CYCLES):
+        p = task.model.parameter_vector(values)
+        rows, (equation, _, _) = space.rows(p), space.labels()
+        scale = dict(zip(equation, robust_scale(rows, equation), strict=True))
+        margin = FAR * np.array([scale.get(a, np.inf) for a in range(len(space.layout.angle))])
+        if not space.leave_out_pulled(p, margin):
+            break
+        first = fit_equations(space, task.free, values, ITERATIONS, task.executor)
+        values = possible(task, task.free, {**values, **first})
+    return values
 
 
 def at_best_delays(
     space: EquationSpace, candidates: Sequence[Candidate], rows: Rows, weight: FloatArray
 ) -> tuple[Candidate, ...]:
-    """The candidates, effects that delay an input begun at a whole number of samples where that
-    leaves less of the `rows` (see `rows_around`), each counted by its `weight` [n], than their
-    tangent does. The number is doubled as long as that leaves less, within the windows of the rows,
-    then found by halving: most inputs are smooth, or change seldom, over such times.
+    """The candidates, effects that delay an input started at a whole number of samples where that
+    reduces the sum of squares of the `rows` (see `rows_around`), each counted by its `weight` [n],
+    more than their tangent does. The number is doubled as long as that helps, within the windows of
+    the rows, then found by halving: most inputs are smooth, or change seldom, over such times.
     """
     delays = {
         space.model.parameter_names[index] for index in space.model.input_delays if index >= 0
@@ -98,8 +177,8 @@ def _at_best(
     rows: Rows,
     weight: FloatArray,
 ) -> FreeParameter:
-    """A delay `f` that vanishes at `zero`, where its candidate begins (see `at_best_delays`);
-    `base` are the values of what that brings along.
+    """A delay `f` that vanishes at `zero`, at its initial value (see `at_best_delays`); `base` are
+    the values of what that brings along.
     """
     period = usual_period(space.runs)
     most = int(min(space.half_width, f.upper - zero) / period + 1e-6)
@@ -133,7 +212,7 @@ Candidates = tuple[Candidate, ...]
 
 
 @dataclass(frozen=True, eq=False)
-class Proposal:
+class ProposedSet:
     """A set of candidates and the values of all parameters at which to start it."""
 
     candidates: Candidates
@@ -141,36 +220,36 @@ class Proposal:
 
 
 @dataclass(frozen=True, eq=False)
-class Proposals:
-    """The start of the declared model, sets to try, and candidates that the rows do not show.
+class ProposedSets:
+    """The start of the declared model, sets to try, and candidates `without_influence` on the rows.
 
-    `further` gives the sets to try where the best of `sets` leaves more than noise. `waves` are all
-    candidates with a frequency, also those of which the rows show no line. `asked_for` tells
-    whether the rows prefer any set to none. `space` is None where the machine has no equation
-    space; then only the simulation searches.
+    `further` gives the sets to try where the residual of the best of `sets` exceeds the noise.
+    `waves` are all candidates with a frequency, also those of which the rows show no line.
+    `is_any_preferred`: whether the rows prefer any set to the null model. `space` is None where the
+    machine has no equation space; then only the simulation searches.
     """
 
     start: dict[str, float]
-    sets: tuple[Proposal, ...]
-    further: Callable[[], tuple[Proposal, ...]]
-    unseen: Candidates
+    sets: tuple[ProposedSet, ...]
+    further: Callable[[], tuple[ProposedSet, ...]]
+    without_influence: Candidates
     waves: Candidates
-    asked_for: bool
+    is_any_preferred: bool
     space: EquationSpace | None
     regression: Regression | None
 
 
-def propose(task: Task) -> Proposals:
+def propose(task: Task) -> ProposedSets:
     """Regress the residual torques and currents along the measured motion on all candidates."""
     start = declared_start(task)
     space = equation_space(task, start)
     waves = tuple(c for c in task.candidates if c.locked is not None)
     if space is None:
-        return Proposals(start, (), tuple, task.candidates, waves, False, None, None)
+        return ProposedSets(start, (), tuple, task.candidates, waves, False, None, None)
     values = first_fit(task, space, start)
     declared, around = _declared_rows(task, space, values), rows_around(space, values)
     candidates = at_best_delays(space, task.candidates, around, declared.weight)
-    seen, unseen = signatures(space, candidates, around, declared.weight, task.executor)
+    seen, without_influence = signatures(space, candidates, around, declared.weight, task.executor)
     rows = _regressed(task, space, declared, seen)
 
     def scan(left: FloatArray) -> list[Signature]:
@@ -183,18 +262,20 @@ def propose(task: Task) -> Proposals:
     sets = tuple(task.executor.map(refine, first))
 
     @cache
-    def further() -> tuple[Proposal, ...]:
+    def further() -> tuple[ProposedSet, ...]:
         return tuple(task.executor.map(refine, others))
 
-    asked_for = bool(preferred.candidates)
-    return Proposals(values, sets, further, tuple(unseen), waves, asked_for, space, rows)
+    is_any_preferred = bool(preferred.candidates)
+    return ProposedSets(
+        values, sets, further, tuple(without_influence), waves, is_any_preferred, space, rows
+    )
 
 
 def in_rows_of(
     task: Task, space: EquationSpace, values: Mapping[str, float], beside: Sequence[Candidate]
 ) -> Regression:
     """The regression of the rows of another space at `values` (all parameters) on all candidates
-    whose frequency is known, with weights from what the set `beside` leaves.
+    whose frequency is known, with weights from the residual of the set `beside`.
     """
     declared, around = _declared_rows(task, space, values), rows_around(space, values)
     seen, _ = signatures(space, task.candidates, around, declared.weight, task.executor)
@@ -223,19 +304,21 @@ def _refined(
     values: Mapping[str, float],
     candidates: Sequence[Candidate],
     executor: Executor | None = None,
-) -> Proposal:
-    """A set started where the rows ask for it, the parameters that shape it fitted to them too."""
+) -> ProposedSet:
+    """A set with the initial values that the rows give, the parameters that shape it fitted to them
+    too.
+    """
     begun = start_of(task, rows, candidates, values)
     own = {(s.candidate.key, s.candidate.member): s.candidate for s in rows.signatures}
     placed = tuple(own[c.key, c.member] for c in candidates)
     free = (*task.free, *(restarted(f, begun[f.name]) for c in placed for f in c.free))
     found = fit_equations(space, free, begun, REFINEMENTS, executor)
-    return Proposal(placed, possible(task, free, {**begun, **found}))
+    return ProposedSet(placed, possible(task, free, {**begun, **found}))
 
 
-def placed_by_rows(candidates: Sequence[Candidate], found: Proposals) -> tuple[Candidate, ...]:
-    """Candidates as the rows begin them: those with a frequency at the line that was found, or left
-    out without one, and long delays at their number of samples.
+def placed_by_rows(candidates: Sequence[Candidate], found: ProposedSets) -> tuple[Candidate, ...]:
+    """Candidates with the initial values of the rows: those with a frequency at the line that was
+    found, or left out without one, and long delays at their number of samples.
     """
     shown = found.regression.signatures if found.regression else ()
     placed = {(s.candidate.key, s.candidate.member): s.candidate for s in shown}
@@ -248,7 +331,7 @@ def placed_by_rows(candidates: Sequence[Candidate], found: Proposals) -> tuple[C
 
 def start_for(
     task: Task,
-    found: Proposals,
+    found: ProposedSets,
     candidates: Sequence[Candidate],
     values: Mapping[str, float],
     linear: bool = False,
@@ -270,9 +353,9 @@ def start_for(
 def _best_sets(
     rows: Regression,
 ) -> tuple[Subset, list[Candidates], list[Candidates], Regression]:
-    """The set that blocks left out favour, and those to try: what is no worse than the best, the
-    simplest first, then the best of every size; and to try next, twice as many that predict best of
-    all others, most of them triples. Scales follow the residual of the favoured set.
+    """The set that predicts blocks left out best, and those to try: what is no worse than the best,
+    the simplest first, then the best of every size; and to try next, twice as many that predict
+    best of all others, most of them triples. Scales follow the residual of that set.
     """
     chosen: Subset | None = None
     for _ in range(CYCLES):

@@ -1,16 +1,49 @@
-"""Refits of a set by simulation: over short windows first, then whole runs, at last to the end."""
+"""Refits of a set by simulation: over short windows first, then whole runs, at last to the end.
 
-from collections.abc import Mapping, Sequence
+Their initial values are those of the weak-form rows, of responses in the outputs, and others near
+them. The declared model is one of the sets: each set is restarted from the end of that and it from
+theirs, for a set fits no worse than the declared model, which it contains, and its gain counts over
+the best fit of that.
+"""
+
+import math
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import FAR_OFF, Candidate
-from ptp_symbolic.numeric.diagnose.cut_runs import settled, shares_of_usual, starts_of
-from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
-from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise, left_over
-from ptp_symbolic.numeric.diagnose.linear import (
+from ptp_symbolic.numeric.diagnose.cut_runs import (
+    fitted_through,
+    growing,
+    in_windows,
+    in_windows_of,
+    more_than_halves,
+    parted_task,
+    settled,
+    shares_of_usual,
+    starts_of,
+    validation_in_windows,
+)
+from ptp_symbolic.numeric.diagnose.gain import gain
+from ptp_symbolic.numeric.diagnose.noise_floor import (
+    Carried,
+    carried_noise,
+    leaves_white_noise,
+    normalised_residual,
+    with_fewer_samples,
+)
+from ptp_symbolic.numeric.diagnose.proposals import (
+    ProposedSet,
+    ProposedSets,
+    declared_start,
+    start_for,
+)
+from ptp_symbolic.numeric.diagnose.regression import weakly_identified
+from ptp_symbolic.numeric.diagnose.responses import (
+    Response,
+    compensated,
     effect_of,
     projected_off,
     stacked_jacobian,
@@ -20,18 +53,26 @@ from ptp_symbolic.numeric.diagnose.trial import (
     SHARP,
     Task,
     Trial,
+    all_free,
     continued,
+    deviances,
     fitted,
     halving,
-    is_alike,
+    is_near,
+    is_same_end,
     ranked,
+    side_by_side,
+    simulated_at,
 )
 from ptp_symbolic.numeric.identify.constants import (
     ABOVE_NOISE,
     CYCLES,
     FORGOTTEN,
+    ITERATIONS,
+    MOST,
     NEARBY,
     ROUGH,
+    SCREENED,
     STEP,
     TRIED,
     TUNING,
@@ -39,21 +80,20 @@ from ptp_symbolic.numeric.identify.constants import (
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.evidence import recorded
-from ptp_symbolic.numeric.identify.fit import Fit
-from ptp_symbolic.numeric.identify.run_starts import has_linked
-from ptp_symbolic.numeric.identify.simulations import POLISH
+from ptp_symbolic.numeric.identify.fit import Fit, has_linked
+from ptp_symbolic.numeric.identify.least_squares import POLISH
 
 FloatArray = NDArray[np.float64]
 
 
 def refitted_in(part: Task, trial: Trial) -> Trial:
-    """A trial fitted to its end to runs in parts, whose starts are begun at their guesses."""
+    """A trial fitted to its end to runs in parts, whose initial states start at their guesses."""
     begun = fitted(part, trial.candidates, trial.values, None)
     return polished(part, begun, carried_noise(part, begun.fit))
 
 
 def without_misleading(trial: Trial) -> Trial:
-    """The trial with its record of misleading derivatives cleared: they are looked for anew."""
+    """The trial with its record of misleading derivatives cleared: they are searched again."""
     return replace(trial, fit=replace(trial.fit, misleading=None))
 
 
@@ -63,13 +103,13 @@ def over_windows(
     starts: Sequence[Mapping[str, float]],
     spread: Sequence[Mapping[str, float]] = (),
 ) -> list[Trial]:
-    """The trial that begins where fits over ever longer windows lead from the best of `starts`, and
-    of those `spread` further off where these leave more than white noise: a whole run that sticks
-    where the machine slid leads a fit astray, windows do not (multiple shooting: Bock, 1983). None
-    where the runs are windows already, or no fit succeeds.
+    """The trial that starts where fits over windows of growing length end, from the best of
+    `starts`, and of those `spread` further off where the residual of these exceeds white noise: a
+    whole run that sticks where the machine slid misleads a fit, windows do not (multiple shooting:
+    Bock, 1983). None where the runs are windows already, or no fit succeeds.
 
-    Whatever they leave, windows that leave far more than usual hardly count: they are many, and
-    only lead the way.
+    Windows with residuals far above the median hardly count: they are many, and only give initial
+    values.
     """
     best: Trial | None = None
     for windows in task.windows:
@@ -84,7 +124,9 @@ def over_windows(
 
         near = starts if best is None else [best.values]
         begun = halving(part, [begin(values) for values in near], 1)
-        if best is None and not (begun and np.all(left_over(begun[0].fit) <= ABOVE_NOISE)):
+        if best is None and not (
+            begun and np.all(normalised_residual(begun[0].fit) <= ABOVE_NOISE)
+        ):
             known = begun[0].fit.z if begun else None
             far = halving(part, [begin(values, known) for values in spread], TRIED, iterations=1)
             begun = ranked([*begun, *halving(part, far, 1)])
@@ -95,23 +137,23 @@ def over_windows(
 
 
 def polished(task: Task, trial: Trial, carried: Carried) -> Trial:
-    """The trial fitted to its end, and begun anew where that is near the floor."""
+    """The trial fitted to its end, and restarted where that is near the noise floor."""
     trial = to_its_end(task, trial, carried)
-    if not is_near_floor(trial):
+    if not is_near_noise_floor(trial):
         return trial
-    return started_anew(task, _in_time(task, trial, carried), carried)
+    return restarted_fit(task, _in_time(task, trial, carried), carried)
 
 
-def is_near_floor(trial: Trial) -> bool:
-    """Whether a trial leaves at most NEARBY times the noise of every signal."""
-    return bool(np.all(left_over(trial.fit) <= NEARBY))
+def is_near_noise_floor(trial: Trial) -> bool:
+    """Whether the residual of a trial is at most NEARBY times the noise, in every signal."""
+    return bool(np.all(normalised_residual(trial.fit) <= NEARBY))
 
 
 def _in_time(task: Task, trial: Trial, carried: Carried) -> Trial:
-    """The trial, or a better end past valleys in which friction lets go a sample late somewhere: a
-    drive soon forgets it, so that blocks of runs tell it from the parameters, where the sum of all
-    squares pays for it with parameters that are wrong everywhere (see `identify.robust_loss`).
-    Where runs are windows, these are such blocks.
+    """The trial, or a better end past local minima in which friction breaks away a sample late
+    somewhere: a drive soon forgets it, so that blocks of runs separate it from the parameters,
+    where the sum of all squares compensates it by parameters that are wrong everywhere (see
+    `identify.robust_loss`). Where runs are windows, these are such blocks.
     """
     for _ in range(CYCLES if task.windows else 0):
         if leaves_white_noise(trial, carried):
@@ -121,39 +163,40 @@ def _in_time(task: Task, trial: Trial, carried: Carried) -> Trial:
         if eased.fit.failed:
             return trial
         before, trial = trial, ranked([trial, to_its_end(task, eased, carried)])[0]
-        if is_alike(trial, before):
+        if is_same_end(trial, before):
             break
     return trial
 
 
-def started_anew(task: Task, trial: Trial, carried: Carried) -> Trial:
-    """The trial, or a better end from elsewhere: with starts of the runs looked for anew, and with
-    declared parameters that have strayed back at their starts or as far off as a start may be.
+def restarted_fit(task: Task, trial: Trial, carried: Carried) -> Trial:
+    """The trial, or a better end from elsewhere: with the initial states of the runs estimated
+    anew, and with declared parameters outside their prior range back at their starts, or at the
+    ends of that range.
 
     Places in a gap that have followed the parameters keep these in place, and a parameter that the
-    others' errors drove to where it does nothing has no derivative that leads back.
+    others' errors drove to where it does nothing has no derivative that points back.
     """
     if leaves_white_noise(trial, carried):
         return trial
-    left = halving(task, begun_anew(task, trial), 1)
+    left = halving(task, restarts(task, trial), 1)
     return ranked([trial, *(to_its_end(task, t, carried) for t in left)])[0]
 
 
-def begun_anew(task: Task, trial: Trial) -> list[Trial]:
-    """Where `started_anew` begins; nowhere where every run has a single place to start from."""
+def restarts(task: Task, trial: Trial) -> list[Trial]:
+    """The restarts of `restarted_fit`; none where every run has a single initial guess."""
     if not has_rough_starts(task):
         return []
     here = fitted(
         task, trial.candidates, trial.values, None, parent=trial.fit, executor=task.executor
     )
-    return [here, *strayed_back(task, trial)]
+    return [here, *back_in_prior_range(task, trial)]
 
 
-def strayed_back(task: Task, trial: Trial) -> list[Trial]:
-    """The trial with declared parameters that have strayed back at their starts, and as far off as
-    a start may be, not yet fitted; none where none has.
+def back_in_prior_range(task: Task, trial: Trial) -> list[Trial]:
+    """The trial with declared parameters outside their prior range back at their starts, and at the
+    ends of that range, not yet fitted; none where none is outside.
     """
-    run, strayed = task.executor, strayed_from_start(task, trial.values)
+    run, strayed = task.executor, outside_prior_range(task, trial.values)
     begun: list[Trial] = []
     for factor in (1.0, FAR_OFF, 1.0 / FAR_OFF) if strayed else ():
         back = {n: inside(f, factor * f.start) for f in strayed for n in f.names}
@@ -164,12 +207,14 @@ def strayed_back(task: Task, trial: Trial) -> list[Trial]:
 
 
 def has_rough_starts(task: Task) -> bool:
-    """Whether runs may begin at several places, in a gap or at rest: the misfit is rough then."""
+    """Whether runs may begin at several places, in a gap or at rest: the deviance is rough then."""
     return any(u.contact is not None or u.instead for run in task.train for u in run.unknowns)
 
 
-def strayed_from_start(task: Task, values: Mapping[str, float]) -> list[FreeParameter]:
-    """Declared parameters further from where they started than a start may be off."""
+def outside_prior_range(task: Task, values: Mapping[str, float]) -> list[FreeParameter]:
+    """Declared parameters outside their prior range: further from their starts than these may be
+    off.
+    """
     return [
         f
         for f in task.free
@@ -184,7 +229,7 @@ def inside(free: FreeParameter, value: float) -> float:
 
 def to_its_end(task: Task, trial: Trial, carried: Carried) -> Trial:
     """The trial fitted with derivatives where the motion is smooth, with finite differences where
-    friction makes it a staircase, in turn; windows are begun anew where the one before ends.
+    friction makes it a staircase, in turn; windows are restarted where the one before ends.
     """
     for _ in range(CYCLES):
         if has_linked(task.train):
@@ -193,16 +238,17 @@ def to_its_end(task: Task, trial: Trial, carried: Carried) -> Trial:
             trial = ranked([trial, begun])[0]
         smooth = continued(task, trial, POLISH, executor=task.executor)
         if leaves_white_noise(smooth, carried):
-            return _with_strays_begun_anew(task, smooth)
+            return _with_windows_restarted(task, smooth)
         trial = continued(task, without_misleading(smooth), POLISH, ROUGH, WIDE_STEP, task.executor)
-        if is_alike(trial, smooth):
+        if is_same_end(trial, smooth):
             break
     return trial
 
 
-def _with_strays_begun_anew(task: Task, trial: Trial) -> Trial:
-    """The trial, or a better end with its windows begun where the one before ends, if one of them
-    leaves so much that it hardly counts: its start went astray then while the parameters moved.
+def _with_windows_restarted(task: Task, trial: Trial) -> Trial:
+    """The trial, or a better end with its windows started where the one before ends, if the
+    residual of one is so large that it hardly counts: its initial state was lost while the
+    parameters moved.
     """
     if not has_linked(task.train) or np.all(shares_of_usual(trial) <= TUNING**2):
         return trial
@@ -211,7 +257,9 @@ def _with_strays_begun_anew(task: Task, trial: Trial) -> Trial:
 
 
 def sharpened(task: Task, trial: Trial, carried: Carried) -> Trial:
-    """A polished trial fitted on with sharp simulations, where little but noise is left."""
+    """A polished trial fitted on with sharp simulations, where the residual is little more than
+    noise.
+    """
     if trial.fit.failed or not leaves_white_noise(trial, carried):
         return trial
     trial = continued(task, trial, POLISH, SHARP, executor=task.executor)
@@ -229,8 +277,8 @@ def without_run(task: Task, trial: Trial, name: str) -> Fit:
 
 @recorded()
 def expected_gain(trial: Trial, vanishing: Mapping[str, float]) -> float:
-    """The share of the squared residual with the parameters in `vanishing` at their values there
-    that those at the fit take away, by linear prediction from the Jacobian.
+    """The share by which the fitted parameters in `vanishing` reduce the squared residual, against
+    their values there, by linear prediction from the Jacobian.
     """
     fit = trial.fit
     residual = stacked_residual(fit)
@@ -255,3 +303,279 @@ def fullest(task: Task, candidate: Candidate) -> Candidate:
     """The form of a candidate with the most parameters."""
     best = max(forms(task, candidate), key=lambda c: len(c.free))
     return best if len(best.free) > len(candidate.free) else candidate
+
+
+def started(task: Task, declared: Trial, sets: Sequence[ProposedSet]) -> list[Trial]:
+    """The proposed sets that do best over short windows, each at the better of two starts: the end
+    of the windows, and beside the declared model.
+    """
+    part = replace(task, train=task.few)
+
+    def short_fit(proposal: ProposedSet) -> Trial:
+        values, run = proposal.values, task.executor
+        return fitted(part, proposal.candidates, values, None, ITERATIONS, executor=run)
+
+    def at_better_start(short: Trial) -> Trial:
+        own = {name for c in short.candidates for name in c.names}
+        beside = declared.values | {name: short.values[name] for name in own}
+        starts = [
+            _begun(task, short.candidates, short.values, None),
+            _begun(task, short.candidates, beside, declared.fit),
+        ]
+        return ranked(starts)[0]
+
+    return side_by_side(at_better_start, ranked(side_by_side(short_fit, sets))[:TRIED])
+
+
+def along(task: Task, proposals: ProposedSets, found: Response, parent: Trial) -> list[Trial]:
+    """Refits started where a response in the outputs predicts, from `parent`, and part of the way
+    there. What has no influence on the rows has misleading derivatives: they are replaced at once.
+    """
+    proposal = found.proposal
+    origin = parent.values | dict(found.shape)
+    begun = []
+    for part in (1.0, MOST):
+        values = {n: origin[n] + part * (v - origin[n]) for n, v in proposal.values.items()}
+        begun.append(_begun(task, proposal.candidates, values, parent.fit))
+    if found.candidate.key not in {c.key for c in proposals.without_influence}:
+        return [ranked(begun)[0]]
+    return [continued(task, t, 1, secants=WIDE_STEP, executor=task.executor) for t in begun]
+
+
+def from_rows(
+    task: Task,
+    proposals: ProposedSets,
+    candidates: Sequence[Candidate],
+    values: Mapping[str, float],
+) -> list[Trial]:
+    """A set with the initial values of the rows (what they do not show stays at `values`), and
+    where fits over windows end from there and from the declared start.
+    """
+    start = start_for(task, proposals, candidates, values)
+    own = {name: start[name] for c in candidates for name in c.names}
+    begun = over_windows(task, candidates, [start, declared_start(task) | own])
+    return [*begun, _begun(task, candidates, start, None)]
+
+
+def taken_over(task: Task, kept: Sequence[Candidate], trial: Trial) -> list[Trial]:
+    """The declared model with some candidates `kept` of a trial, without the others: as they are,
+    and where they compensate for the others, by linear prediction; a limit is switched off too far
+    away for that.
+    """
+    dropped = [c for c in trial.candidates if c not in kept]
+    off = {name: task.fixed[name] for c in dropped for name in c.names}
+    values = trial.values | off
+    others = {f.name for f in all_free(task, kept, values)}
+    linear = [f for c in dropped for f in c.defining if not c.is_limit(f)]
+    vanishing = {f.name: off[f.name] for f in linear}
+    taken = _taken(trial.fit, vanishing, others) | off
+    starts = [values] if taken == values else [values, taken]
+    return side_by_side(lambda start: _begun(task, kept, start, trial.fit), starts)
+
+
+@recorded()
+def _taken(fit: Fit, vanishing: Mapping[str, float], others: Set[str]) -> dict[str, float]:
+    """See `compensated`."""
+    return compensated(fit, vanishing, others, stacked_jacobian(fit))
+
+
+def in_place(
+    task: Task, proposals: ProposedSets, candidates: Sequence[Candidate], trial: Trial
+) -> list[Trial]:
+    """A set like that of `trial`, where the rows start it, and where they start its candidates
+    alone.
+    """
+    start = start_for(task, proposals, candidates, trial.values)
+    beside = trial.values | {name: start[name] for c in candidates for name in c.names}
+    return [_begun(task, candidates, values, None) for values in (start, beside)]
+
+
+def far_starts(
+    free: Sequence[FreeParameter], values: Mapping[str, float]
+) -> list[dict[str, float]]:
+    """`values` with one of the parameters `free` after the other, of those with a start above zero,
+    at the ends of its prior range: rows identify an inertia behind a gear only within the whole,
+    and fits that start with a gap and too little of it end with none.
+    """
+    return [
+        {**values, **dict.fromkeys(f.names, inside(f, factor * f.start))}
+        for f in free
+        for factor in (FAR_OFF, 1.0 / FAR_OFF)
+        if f.start > 0.0
+    ]
+
+
+def from_far_off(task: Task, proposals: ProposedSets, trial: Trial) -> list[Trial]:
+    """A trial with one declared parameter that is weakly identified by the rows far off, each of
+    them in turn (see `far_starts`), and in other local minima over it, the best first, not yet
+    fitted: the damping of a shaft shows only as a gear bounces, and the deviance is rough in it.
+    And with those outside their prior range back in it: the residual may be noise alone in runs
+    where they hardly matter.
+    """
+    rows = proposals.regression
+    free = [] if rows is None else [f for f in weakly_identified(rows) if f.start > 0.0]
+    valleys = [t for f in free for t in _local_minima(task, trial, f)]
+    order = np.argsort(deviances([trial, *valleys])[1:])[:TRIED]
+    starts = [*(valleys[k].values for k in order), *far_starts(free, trial.values)]
+    begun = [_begun(task, trial.candidates, values, trial.fit) for values in starts]
+    return begun + back_in_prior_range(task, trial)
+
+
+def _local_minima(task: Task, trial: Trial, free: FreeParameter) -> list[Trial]:
+    """The trial, not fitted, at values of one parameter, all others fixed, at which its deviance is
+    below that at the values beside: half as much more at every step, at least as far from its start
+    as that may be off. Its own value is among the values, and not returned.
+    """
+    own, steps = trial.values[free.name], math.ceil(math.log(FAR_OFF) / math.log(1.0 + MOST))
+    spread = free.start * (1.0 + MOST) ** np.arange(-steps, steps + 1)
+    amounts = sorted({own, *(inside(free, a) for a in spread)})
+    scanned = [trial if a == own else _moved(task, trial, free, a) for a in amounts]
+    cost = [np.inf, *deviances(scanned), np.inf]
+    return [
+        place
+        for place, before, here, after in zip(scanned, cost, cost[1:], cost[2:], strict=False)
+        if place is not trial and here < min(before, after)
+    ]
+
+
+def _moved(task: Task, trial: Trial, free: FreeParameter, amount: float) -> Trial:
+    """The trial with one parameter at another amount, not fitted, and without new Jacobians."""
+    values = trial.values | dict.fromkeys(free.names, amount)
+    evaluations = simulated_at(task, trial.fit, values)
+    return replace(trial, fit=replace(trial.fit, values=values, evaluations=evaluations))
+
+
+def _begun(
+    task: Task,
+    candidates: Sequence[Candidate],
+    values: Mapping[str, float],
+    parent: Fit | None,
+) -> Trial:
+    """A set at some values, not yet fitted; its runs start where those of the parent did, or else
+    at their guesses.
+    """
+    z = None if parent is None else parent.z
+    return fitted(task, candidates, values, z, 0, parent, executor=task.executor)
+
+
+def beside_declared(task: Task, trial: Trial, declared: Trial, carried: Carried) -> Trial:
+    """A trial that fits worse than the declared model, restarted from that, its effects as they are
+    or at their vanishing values; `carried` as in `Search`.
+    """
+    own = {name: trial.values[name] for c in trial.candidates for name in c.names}
+    off = {n: c.vanishing[f.name] for c in trial.candidates for f in c.defining for n in f.names}
+    begun = [
+        fitted(task, trial.candidates, values, declared.fit.z, 0, declared.fit)
+        for values in (declared.values | own, declared.values | own | off)
+    ]
+    left = halving(task, begun, 1)
+    return ranked([trial, *(polished(task, t, carried) for t in left)])[0]
+
+
+def declared_from(task: Task, trial: Trial, declared: Trial, carried: Carried) -> Trial | None:
+    """The declared model fitted from where a trial ended, as it is and where it compensates for the
+    effects; None unless that is materially better than `declared`, which was in a local minimum
+    then.
+    """
+    left = halving(task, taken_over(task, (), trial), 1)
+    again = [polished(task, t, carried) for t in left if is_near(t, [declared])]
+    best = ranked([declared, *again])[0]
+    return best if gain(best, declared).share >= task.material else None
+
+
+def fit_declared(task: Task, proposals: ProposedSets) -> tuple[Task, Trial]:
+    """The declared model fitted to whole runs, and over windows where the residual exceeds white
+    noise; and the task with windows for runs that need them.
+    """
+    if not task.windows:
+        return fitted_over_windows(task, proposals)
+    part, trial = over_whole_runs(task, proposals)
+    if leaves_white_noise(trial, carried_noise(part, trial.fit)):
+        return part, trial
+    part, after = fitted_over_windows(task, proposals)
+    return part, better_over_same_runs(trial, after)
+
+
+def better_over_same_runs(before: Trial, after: Trial) -> Trial:
+    """The declared model `after` a fit over windows, or as it was `before` if that is better: a
+    better start does not always give a better end. Fits of other runs cannot be compared.
+    """
+    names = [[run.name for run in trial.fit.runs] for trial in (before, after)]
+    return ranked([before, after])[0] if names[0] == names[1] else after
+
+
+def over_whole_runs(task: Task, proposals: ProposedSets) -> tuple[Task, Trial]:
+    """The declared model fitted to whole runs from the rows' start and from the declared one; the
+    task as in `fitted_over_windows`.
+    """
+    starts = [proposals.start, declared_start(task)]
+    run = task.executor
+    begun = [fitted(task, (), values, None, executor=run) for values in starts]
+    best = halving(task, begun, 1) or begun[-1:]
+    return _in_windows_of_its_own(task, polished(task, best[0], carried_noise(task, best[0].fit)))
+
+
+def fitted_over_windows(task: Task, proposals: ProposedSets) -> tuple[Task, Trial]:
+    """The declared model, from where fits over windows end that start at the values of the rows and
+    at the declared ones, and from those two; where runs are windows already, from starts far off
+    too, and from the ends of shorter ones. And the task with windows for runs that multiply small
+    errors (see `in_windows`), which would mislead the fit.
+    """
+    starts = [proposals.start, declared_start(task)]
+    spread = far_starts(task.free, proposals.start) if has_rough_starts(task) else []
+    begun = over_windows(task, (), starts, spread)
+    if begun:
+        part = in_windows(task, begun[0])
+        if part is not task:
+            task, after = part, fitted(part, (), begun[0].values, None)
+            begun = [settled(task, after, task.executor)]
+    begun += [fitted(task, (), values, None, executor=task.executor) for values in starts]
+    if not task.windows:
+        far = [fitted(task, (), values, None, executor=task.executor) for values in spread]
+        begun += halving(task, far, SCREENED)
+        begun.append(fitted(task, (), fitted_through(growing(task), (), proposals.start), None))
+    best = halving(task, begun, 1) or begun[-1:]
+    return _in_windows_of_its_own(task, polished(task, best[0], carried_noise(task, best[0].fit)))
+
+
+def _in_windows_of_its_own(task: Task, trial: Trial) -> tuple[Task, Trial]:
+    """The task with its runs parted and cut where the declared model needs it, and the trial
+    refitted there. The length of windows was chosen at the start values, which may multiply fewer
+    errors than the fitted ones: their residual may seem to be noise of the inputs, which can push a
+    simulation to the other side of a rest.
+    """
+    task, trial = _in_parts_if_better(parted_task(task, trial), task, trial)
+    part = in_windows(task, trial)
+    if part is not task:
+        short = refitted_in(part, trial)
+        if np.all(normalised_residual(short.fit) <= normalised_residual(trial.fit)):
+            task, trial = part, short
+    if not task.windows and np.any(normalised_residual(trial.fit) > ABOVE_NOISE):
+        part = in_windows_of(task, trial)
+        if part is not task:
+            part = with_fewer_samples(part, trial.values)
+            task, trial = _in_parts_if_better(part, task, trial)
+    trial = _back_in_range(task, trial)
+    return validation_in_windows(task, trial), trial
+
+
+def _back_in_range(task: Task, trial: Trial) -> Trial:
+    """The declared model, or a better end with parameters back in their prior range (see
+    `restarts`), if some iterations gain materially: one that went where it does nothing has no
+    derivative that points back, and what compensates it is no effect.
+    """
+    strayed = outside_prior_range(task, trial.values)
+    if not strayed or (is_near_noise_floor(trial) and not trial.fit.failed):
+        return trial
+    left = halving(task, restarts(task, trial), 1)
+    if not left or not (trial.fit.failed or gain(left[0], trial).share >= task.material):
+        return trial
+    return polished(task, left[0], carried_noise(task, left[0].fit))
+
+
+def _in_parts_if_better(part: Task, task: Task, trial: Trial) -> tuple[Task, Trial]:
+    """The task in parts and the trial refitted there, where that halves the sum of squares."""
+    if part is task:
+        return task, trial
+    short = refitted_in(part, trial)
+    return (part, short) if more_than_halves(short, trial) else (task, trial)

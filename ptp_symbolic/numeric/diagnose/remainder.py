@@ -1,12 +1,10 @@
-"""The residual torque of a model along the measured motion: observations, no names.
+"""The residual of a model along the measured motion and on validation runs: observations, no names.
 
 The residual torque of every axis is averaged in bins of the angle, of the rate, of the input and of
 the time since the joint turned back, and searched for lines in time and in angle. The share of its
-variance that a side accounts for tells where to look for what is missing.
-
-Whiteness and independence tests of the residual on validation runs, for every signal.
-
-A change of one log at an unknown time: a step, or another way to follow motion or inputs.
+variance that a side accounts for says where to look for what is missing. Residuals of every signal
+are tested for whiteness and for independence of the inputs, and each log for a change at an unknown
+time.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -18,7 +16,7 @@ from numpy.typing import NDArray
 from scipy import stats
 from scipy.signal import lombscargle
 
-from ptp_symbolic.numeric.diagnose.linear import projected_off
+from ptp_symbolic.numeric.diagnose.responses import projected_off
 from ptp_symbolic.numeric.identify.constants import (
     BINS,
     CYCLES_APART,
@@ -193,7 +191,7 @@ def _change_in(
 def _best_change(
     left: FloatArray, changes: FloatArray, along: FloatArray, beside: FloatArray, shown: float
 ) -> tuple[int, float, float, FloatArray]:
-    """Which of the `changes` [n, k] of a column `along` [n] takes most away from what is `left` [n]
+    """Which of the `changes` [n, k] of a column `along` [n] reduces most the residual `left` [n]
     beside columns [n, m], its size (zero where these hide them all), its square beside them, and
     what stays [n].
     """
@@ -217,7 +215,7 @@ def _whitened(table: FloatArray, pole: float) -> FloatArray:
 
 def pole_of(rest: FloatArray, columns: int = 1) -> float:
     """The pole of a residual [n] as an AR(1), corrected for its bias (Kendall, 1954), to which
-    every one of the `columns` beside which it is left adds as the mean does.
+    every one of the `columns` that were projected out adds as the mean does.
     """
     n = len(rest)
     pole = float(rest[1:] @ rest[:-1]) / max(float(rest @ rest), 1e-300)

@@ -1,4 +1,4 @@
-"""What every candidate would change in the rows of the equation space.
+"""What every candidate would change in the weak-form rows.
 
 A candidate's signature is a set of columns: the rows with a finite amount of each parameter that
 switches it on, minus the rows without, at every set of values of the parameters that shape it. Its
@@ -226,12 +226,13 @@ def _strongest(
     carriers: FloatArray,
 ) -> tuple[list[float], float, int]:
     """The frequencies in Hz, or in cycles per turn, of the strongest lines of the residual torques,
-    the lowest that is a line, and how many can be told from one another; none where the axis of the
-    candidate never moves.
+    the lowest that is a line, and how many can be resolved; none where the axis of the candidate
+    never moves.
 
     `carriers` [n, m] is what the candidate does at no frequency, orthonormal when rows count by
     `weight`: over many cycles sines and cosines on them are orthogonal too, so that the squared
-    transforms of the residual on each add up to what a wave of that frequency takes away.
+    transforms of the residual on each add up to what a wave of that frequency reduces its square
+    by.
     """
     equation, _, time = space.labels()
     assert candidate.locked is not None

@@ -12,20 +12,28 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs
-from ptp_symbolic.numeric.diagnose.declared_fit import led_over_windows, over_whole_runs
-from ptp_symbolic.numeric.diagnose.findings import is_earned
-from ptp_symbolic.numeric.diagnose.floor import floor_of, leaves_noise_alone
+from ptp_symbolic.numeric.diagnose.confirm import is_moved_by_inputs
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise
-from ptp_symbolic.numeric.diagnose.proposals import Proposals, propose
-from ptp_symbolic.numeric.diagnose.refits import inside, polished, refitted_in
+from ptp_symbolic.numeric.diagnose.noise_floor import (
+    carried_noise,
+    leaves_noise_alone,
+    noise_floor_of,
+)
+from ptp_symbolic.numeric.diagnose.proposals import ProposedSets, propose
+from ptp_symbolic.numeric.diagnose.refits import (
+    fitted_over_windows,
+    inside,
+    over_whole_runs,
+    polished,
+    refitted_in,
+)
+from ptp_symbolic.numeric.diagnose.stepwise import is_earned
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
+    deviances,
     fitted,
     halving,
-    misfits,
     ranked,
     side_by_side,
 )
@@ -53,12 +61,12 @@ class FittedStructure:
         return tuple(c.key for c in self.added)
 
     @property
-    def is_quiet(self) -> bool:
+    def is_noise_alone(self) -> bool:
         """Whether it leaves noise alone."""
         if self.trial.fit.failed:
             return False
         carried = carried_noise(self.task, self.trial.fit)
-        return leaves_noise_alone(self.trial, floor_of(self.task, self.trial, carried))
+        return leaves_noise_alone(self.trial, noise_floor_of(self.task, self.trial, carried))
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,18 +76,18 @@ class Begun:
     """
 
     fitted: FittedStructure
-    proposals: Proposals
+    proposals: ProposedSets
 
     def finished(self) -> "Begun":
-        """The structure fitted to the end of whole runs; windows are for `led_on`."""
+        """The structure fitted to the end of whole runs; windows are for `over_windows_too`."""
         task = self.fitted.task
         return self._with(*over_whole_runs(task, self.proposals)) if task.windows else self
 
-    def led_on(self) -> "Begun":
+    def over_windows_too(self) -> "Begun":
         """The structure led over windows, where whole runs leave more than noise."""
-        if self.fitted.is_quiet:
+        if self.fitted.is_noise_alone:
             return self
-        return self._with(*led_over_windows(self.fitted.task, self.proposals))
+        return self._with(*fitted_over_windows(self.fitted.task, self.proposals))
 
     def from_values(self, values: Mapping[str, float]) -> "Begun":
         """The structure fitted to the end from `values` of another one that contains it, where that
@@ -177,8 +185,8 @@ def by_fit(declared: FittedStructure, found: Sequence[FittedStructure]) -> list[
     whole = [s for s in found if not s.trial.fit.failed]
     gains = side_by_side(lambda s: gain_over(s, declared), whole)
     better = [s for s, g in zip(whole, gains, strict=True) if g.share >= declared.task.material]
-    misfits_of_better = side_by_side(lambda s: misfit(s, declared), better)
-    cost = {id(s): m for s, m in zip(better, misfits_of_better, strict=True)}
+    each = side_by_side(lambda s: deviance(s, declared), better)
+    cost = {id(s): m for s, m in zip(better, each, strict=True)}
     left, ordered = sorted(better, key=lambda s: cost[id(s)]), []
     while left:
         best = left[0]
@@ -201,17 +209,17 @@ def _is_as_good(simpler: FittedStructure, best: FittedStructure) -> bool:
 def is_better(one: FittedStructure, other: FittedStructure) -> bool:
     """Whether the first of two structures predicts a material share better, clearly so."""
     earned = gain_over(one, other)
-    return earned.share >= one.task.material and earned.is_clear(1)
+    return earned.share >= one.task.material and earned.is_significant(1)
 
 
 def _size(structure: FittedStructure) -> int:
     return len(structure.trial.fit.free)
 
 
-def misfit(structure: FittedStructure, declared: FittedStructure) -> float:
+def deviance(structure: FittedStructure, declared: FittedStructure) -> float:
     """How badly a structure fits, in the windows of the declared one."""
     pattern = declared.trial.fit.runs
-    return misfits([declared.trial, on_runs_of(structure.task, structure.trial, pattern)])[1]
+    return deviances([declared.trial, on_runs_of(structure.task, structure.trial, pattern)])[1]
 
 
 def alternatives(
@@ -229,7 +237,7 @@ def alternatives(
     return [s for s, worse in zip(others, beaten, strict=True) if not worse]
 
 
-def is_told(effect: Candidate, trial: Trial) -> bool:
+def is_identifiable(effect: Candidate, trial: Trial) -> bool:
     """Whether the logs tell any parameter of an effect that a trial has."""
     own = [e for e in estimates(trial.fit) if e.name in effect.parameters]
     return any(e.identified and not e.at_bound for e in own)
@@ -240,7 +248,7 @@ def named_effects(structure: FittedStructure, trial: Trial) -> tuple[Candidate, 
     first, and of which the logs tell nothing, is a part of it.
     """
     first, *along = structure.added
-    told = [c for c in along if is_told(c, trial)]
+    told = [c for c in along if is_identifiable(c, trial)]
     parts = [f for c in along if c not in told for f in c.free]
     return (replace(first, free=(*first.free, *parts)), *told)
 
@@ -269,8 +277,8 @@ def why_rejected(
         why = f"reduces the sum of squares by {share:.0f} % (lower 95 % limit {least:.0f} %)"
         return earned, f"{why}, too little while the residual exceeds the noise"
     first = structure.added[0]
-    if not is_told(first, trial):
+    if not is_identifiable(first, trial):
         return earned, f"no parameter of {first.key} is identifiable from these logs"
-    if not answers_to_inputs(replace(task, train=trial.fit.runs), trial):
+    if not is_moved_by_inputs(replace(task, train=trial.fit.runs), trial):
         return earned, "with it the simulated motion no longer depends on the inputs"
     return earned, None

@@ -1,6 +1,9 @@
-"""A diagnosis as plain data: headline, errors, ranking, parameters.
+"""A diagnosis as plain data: headline, errors, ranking, parameters, curves.
 
-How large a named effect is, in a few words for a headline.
+The error of a fit has one definition for every place that shows one: root mean square over all
+samples of all runs (or windows) of a part, nothing left out: of the angle signals in rad (the
+position of a linear joint in m) and in counts of each signal's own encoder, and of every signal in
+its own unit.
 """
 
 import re
@@ -8,13 +11,13 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import DECLARED_VALUE, Candidate
-from ptp_symbolic.numeric.diagnose.errors import DEFINITION, error_of, over
-from ptp_symbolic.numeric.diagnose.findings import Search
-from ptp_symbolic.numeric.diagnose.floor import Floor
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain
-from ptp_symbolic.numeric.diagnose.subsets import gain_along_motion
+from ptp_symbolic.numeric.diagnose.noise_floor import NoiseFloor
+from ptp_symbolic.numeric.diagnose.regression import gain_along_motion
+from ptp_symbolic.numeric.diagnose.stepwise import Search
 from ptp_symbolic.numeric.diagnose.trial import Trial, ranked
 from ptp_symbolic.numeric.diagnose.verdict import (
     EXPLAINED,
@@ -23,19 +26,205 @@ from ptp_symbolic.numeric.diagnose.verdict import (
     UP_TO_GROUP,
     Verdict,
 )
-from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, MATERIAL
+from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, MATERIAL, MOST
+from ptp_symbolic.numeric.identify.evaluate import Evaluation, simulated_signals
+from ptp_symbolic.numeric.identify.evidence import recorded
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.intervals import Estimate
 from ptp_symbolic.numeric.identify.noise import repeatability
 from ptp_symbolic.numeric.identify.run import Run
+
+FloatArray = NDArray[np.float64]
+
+
+Pair = tuple[Run, Evaluation]
+
+DEFINITION = (
+    "root mean square over all samples of all runs of the part, the state at the start of each run"
+    " or window fitted; of the angles together in rad (positions in m), and in counts of their own"
+    " encoders"
+)
+
+
+def pairs_by_run(pairs: Sequence[Pair]) -> dict[str, list[Pair]]:
+    """Pairs by run, the windows of one run together."""
+    grouped: dict[str, list[Pair]] = {}
+    for run, evaluation in pairs:
+        grouped.setdefault(run.source, []).append((run, evaluation))
+    return grouped
+
+
+def angle_columns(run: Run) -> list[int]:
+    """Measured columns that are angles; all columns where there is none."""
+    found = [k for k, name in enumerate(run.signals) if name.startswith("theta_")]
+    return found or list(range(len(run.signals)))
+
+
+@recorded()
+def error_of(fit: Fit, units: dict[str, str], floor: FloatArray | None = None) -> dict[str, Any]:
+    """Errors of `fit` in total, by run and by signal, and those `without` the run or window that
+    alone holds most of the error, None where none does; those of a `floor` [ny], in units of the
+    noise of every signal, where one is given; and the `windows` that they were taken over.
+    """
+    pairs = fit.pairs()
+    unit = units[fit.runs[0].signals[angle_columns(fit.runs[0])[0]]]
+    return {
+        "total": {**_error(pairs, floor), "unit": unit},
+        "by_run": {name: _error(group, floor) for name, group in pairs_by_run(pairs).items()},
+        "by_signal": {
+            name: _signal_error(pairs, k, units[name], floor)
+            for k, name in enumerate(fit.runs[0].signals)
+        },
+        "without": None if floor is not None else _without_worst(pairs, unit),
+        "windows": windows_of(fit.runs),
+    }
+
+
+def windows_of(runs: Sequence[Run]) -> dict[str, Any] | None:
+    """How many windows `runs` were cut into, and how long they are on average in s; None where all
+    are whole.
+    """
+    lengths = [float(run.time[-1] - run.time[0]) for run in runs if run.name != run.source]
+    return {"count": len(lengths), "seconds": sum(lengths) / len(lengths)} if lengths else None
+
+
+def over(windows: Mapping[str, Any] | None) -> str:
+    """What an error was taken over, in words, from what `windows_of` gives."""
+    if windows is None:
+        return "over whole runs"
+    return f"over {windows['count']} windows of {windows['seconds']:.2g} s"
+
+
+def _without_worst(pairs: Sequence[Pair], unit: str) -> dict[str, Any] | None:
+    """The error without the run or window that leaves most of the root mean square, by its name: a
+    machine that sticks where the model slides on, or the other way round, is far off for a while.
+    """
+    if len(pairs) < 2:
+        return None
+    columns = angle_columns(pairs[0][0])
+    squares = [float(np.sum(residual(run, e, None)[:, columns] ** 2)) for run, e in pairs]
+    worst = int(np.argmax(squares))
+    rest = [pair for k, pair in enumerate(pairs) if k != worst]
+    whole, left = _error(pairs, None), _error(rest, None)
+    if not float(left["rmse"] or 0.0) < (1.0 - MOST) * float(whole["rmse"] or 0.0):
+        return None
+    return {"run": pairs[worst][0].name, **left, "unit": unit}
+
+
+def residual(run: Run, evaluation: Evaluation, floor: FloatArray | None) -> FloatArray:
+    """Residuals [k, ny] in the units of the signals, or the `floor` in their place."""
+    table = evaluation.residual.reshape(run.measured.shape)
+    if floor is not None:
+        table = np.broadcast_to(floor, table.shape)
+    return np.asarray(table / run.weight)
+
+
+def _error(pairs: Sequence[Pair], floor: FloatArray | None) -> dict[str, float | None]:
+    columns = angle_columns(pairs[0][0])
+    counts = pairs[0][0].counts[columns]
+    left = np.vstack([residual(run, e, floor)[:, columns] for run, e in pairs])
+    measured = np.vstack([run.measured[:, columns] for run, _ in pairs])
+    centred = np.vstack(
+        [run.measured[:, columns] - run.measured[:, columns].mean(axis=0) for run, _ in pairs]
+    )
+    norm = float(np.linalg.norm(left))
+    in_counts = float(np.sqrt(np.mean((left / counts) ** 2)))
+    return {
+        "rmse_counts": in_counts if np.isfinite(in_counts) else None,
+        "rmse": norm / float(np.sqrt(left.size)),
+        "relative_l2": norm / max(float(np.linalg.norm(measured)), 1e-300),
+        "fit_percent": 100.0 * (1.0 - norm / max(float(np.linalg.norm(centred)), 1e-300)),
+    }
+
+
+def _signal_error(
+    pairs: Sequence[Pair], column: int, unit: str, floor: FloatArray | None
+) -> dict[str, Any]:
+    """Error of one signal in its own unit, and in counts where it has an encoder."""
+    left = np.concatenate([residual(run, e, floor)[:, column] for run, e in pairs])
+    rms, count = float(np.sqrt(np.mean(left**2))), float(pairs[0][0].counts[column])
+    return {"rmse": rms, "unit": unit, "rmse_counts": rms / count if np.isfinite(count) else None}
+
+
+@recorded()
+def curves_of(parts: Mapping[str, tuple[Fit, Fit]]) -> dict[str, Any]:
+    """Inputs, measured and simulated signals [n] in SI of every run of each part ("train",
+    "validate"), by the declared and by the final model; the windows of a run joined at the times
+    `borders` in s. The key of a curve is its `run`, with the part where both parts have one of that
+    name.
+    """
+    curves: dict[str, Any] = {}
+    for name, (before_fit, after_fit) in parts.items():
+        units = before_fit.model.units
+        groups = zip(
+            pairs_by_run(before_fit.pairs()).items(),
+            pairs_by_run(after_fit.pairs()).values(),
+            strict=True,
+        )
+        for (source, before), later in groups:
+            key = source if source not in curves else f"{source} ({name})"
+            inputs = before_fit.model.input_names
+            curves[key] = {"run": source, **_curve(name, before, later, units, inputs)}
+    return curves
+
+
+def _curve(
+    kind: str,
+    before: list[Pair],
+    after: list[Pair],
+    units: Mapping[str, str],
+    names: Sequence[str],
+) -> dict[str, Any]:
+    first = before[0][0]
+    signals: dict[str, dict[str, Any]] = {}
+    for column, signal in enumerate(first.signals):
+        count = first.counts[column]
+        signals[signal] = {
+            "unit": units[signal],
+            "measured": _joined([r.measured[:, column] for r, _ in before]),
+            "before": _joined([simulated_signals(r, e)[:, column] for r, e in before]),
+            "after": _joined([simulated_signals(r, e)[:, column] for r, e in after]),
+            "counts": float(count) if np.isfinite(count) else None,
+        }
+    inputs = {
+        name: {
+            "unit": units[name],
+            "values": _joined([r.held_inputs[:, column] for r, _ in before]),
+        }
+        for column, name in enumerate(names)
+    }
+    time = _joined([r.time for r, _ in before])
+    angle, rate, unit = {}, {}, {}
+    for signal, data in signals.items():
+        if signal.startswith("theta_"):
+            axis = signal.removeprefix("theta_")
+            angle[axis] = data["after"]
+            rate[axis] = np.gradient(data["after"], time)
+            unit[axis] = data["unit"]
+    return {
+        "set": kind,
+        "time": time,
+        "signals": signals,
+        "inputs": inputs,
+        "angle": angle,
+        "rate": rate,
+        "angle_unit": unit,
+        "borders": [float(r.time[0]) for r, _ in before[1:]],
+    }
+
+
+def _joined(windows: list[FloatArray]) -> FloatArray:
+    """Windows end to end; each begins with the sample that ended the one before."""
+    return np.concatenate([windows[0], *(w[1:] for w in windows[1:])])
+
 
 _PART = re.compile(r"(\w+_)(sin|cos)(\d?)(_\w+)")  # a part of a wave of `harmonics`
 
 
 def sizes_of(after: Trial, intervals: Mapping[str, Estimate]) -> dict[str, str]:
     """How large every named effect of the trial `after` is, by its key: of the parameters that
-    switch it on the one that is clearest of zero, of a wave the amplitude, with its number of
-    cycles where that was found, of what nothing switches off its first one; angles in degrees.
+    switch it on the most significant one, of a wave the amplitude, with its number of cycles where
+    that was found, of what nothing switches off its first one; angles in degrees.
     """
     units, found = after.fit.model.units, {}
     for c in after.candidates:
@@ -43,7 +232,7 @@ def sizes_of(after: Trial, intervals: Mapping[str, Estimate]) -> dict[str, str]:
             continue
         shown = c.defining or c.free[:1]
         free = max(
-            shown, key=lambda f: _clear_of_zero(intervals[f.name], c.vanishing.get(f.name, 0.0))
+            shown, key=lambda f: _significance(intervals[f.name], c.vanishing.get(f.name, 0.0))
         )
         name, value = _amplitude(free.name, c, intervals)
         found[c.key] = f"{name} = {_written(value, units[free.name])}"
@@ -74,14 +263,14 @@ def _written(value: float, unit: str) -> str:
     return f"{value:.3g} {unit}".removesuffix(" 1")
 
 
-def _clear_of_zero(estimate: Estimate, vanishing: float) -> float:
+def _significance(estimate: Estimate, vanishing: float) -> float:
     """Distance of a value from the one that switches its effect off, in widths of its interval."""
     width = estimate.upper - estimate.lower
     known = np.isfinite(width) and width > 0.0
     return abs(estimate.value - vanishing) / width if known else 0.0
 
 
-SMALL = "The deviation is statistically clear but small."
+SMALL = "The deviation is statistically significant but small."
 
 
 def headline(found: Verdict, errors: dict[str, Any], sizes: Mapping[str, str]) -> str:
@@ -108,24 +297,25 @@ def headline(found: Verdict, errors: dict[str, Any], sizes: Mapping[str, str]) -
         sentences = [f"{begin}; validation error {before} to {after}{taken}."]
         sentences += _mostly_in_one_run(errors["validate"]["after"]["without"])
         sentences += [SMALL for c in found.final.candidates if _is_small(c, found.final)][:1]
-        alike = {key: ", ".join(keys) for key, keys in found.confusable.items() if keys}
+        alternatives = {key: ", ".join(keys) for key, keys in found.confusable.items() if keys}
         alone = len(found.final.candidates) == 1
         sentences += [
             f"In these logs {'it' if alone else key} is indistinguishable from: {others}."
-            for key, others in alike.items()
+            for key, others in alternatives.items()
         ]
         if found.word == PARTLY:
             sentences.append(f"The noise floor is {floor}: part of the residual is unexplained.")
         return " ".join(sentences)
-    text = f"Something is missing, and no known effect could be confirmed: {_most_left(errors)}."
+    left = _residual_in_words(errors)
+    text = f"Something is missing, and no known effect could be confirmed: {left}."
     if found.closest is not None:
         text += f" The closest candidate, not confirmed: {' + '.join(found.closest.keys)}."
     return text
 
 
-def _most_left(errors: Mapping[str, Any]) -> str:
-    """What the declared model leaves beside the floor: of the validation runs, or of the training
-    runs where these alone show more than noise.
+def _residual_in_words(errors: Mapping[str, Any]) -> str:
+    """The residual of the declared model beside the noise floor: of the validation runs, or of the
+    training runs where these alone show more than noise.
     """
 
     def is_at_floor(part: str) -> bool:
@@ -147,7 +337,7 @@ def _over_windows(error: Mapping[str, Any]) -> str:
 
 
 def _mostly_in_one_run(without: Mapping[str, Any] | None) -> list[str]:
-    """Where most of the error after lies in one run or window: which, and what the others leave."""
+    """Where most of the error lies in one run or window: which, and the error of the others."""
     if without is None:
         return []
     return [
@@ -204,9 +394,9 @@ def repeatability_table(runs: Sequence[Run], units: Mapping[str, str]) -> dict[s
     }
 
 
-def error_table(parts: dict[str, tuple[Fit, Fit]], floor: Floor) -> dict[str, Any]:
+def error_table(parts: dict[str, tuple[Fit, Fit]], floor: NoiseFloor) -> dict[str, Any]:
     """Errors of each part ("train", "validate") by the declared model and by the final one, and of
-    the floor.
+    the noise floor.
     """
     table: dict[str, Any] = {"definition": DEFINITION}
     for name, (before, after) in parts.items():
@@ -279,9 +469,11 @@ def ranking(
     the declared model in prediction, and why it was accepted or not; then the candidates that were
     compared along the measured motion alone.
     """
-    rivals = [r.trial for r in found.rivals]
+    alternatives = [r.trial for r in found.alternatives]
     trials = [
-        t for t in (found.compared, *rivals, search.chosen, *search.tried.others) if t.candidates
+        t
+        for t in (found.compared, *alternatives, search.chosen, *search.tried.others)
+        if t.candidates
     ]
     best = [t for t in ranked(trials) if np.isfinite(t.fit.cost)]
     kept: dict[tuple[str, ...], Trial] = {}
@@ -352,10 +544,10 @@ def _why(search: Search, found: Verdict, trial: Trial) -> str:
         if found.is_along_motion:
             return "every effect in it is significant in the torque along the measured motion"
         return "every effect in it is significant, and no other effect improves it"
-    rival = next((r for r in found.rivals if r.trial.keys == trial.keys), None)
-    if rival is not None:
+    other = next((r for r in found.alternatives if r.trial.keys == trial.keys), None)
+    if other is not None:
         noise = "its residual is within the propagated noise of the inputs"
-        return noise if rival.excused else "predicts as well as the accepted set"
+        return noise if other.is_within_input_noise else "predicts as well as the accepted set"
     refused = [f"{key} {why}" for key, why in found.refused.items() if key in trial.keys]
     if refused:
         return "; ".join(refused)

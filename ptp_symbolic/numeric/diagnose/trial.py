@@ -1,7 +1,5 @@
-"""A trial: the declared model with a set of candidates, fitted to the training runs by
-simulation.
-
-Fits side by side, in threads of their own that share out their simulations.
+"""A trial: the declared model with a set of candidates, fitted to the training runs by simulation;
+fits run side by side, in threads of their own that share out their simulations.
 """
 
 import os
@@ -14,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.identify.blocks import huber_loss, weighted_median
 from ptp_symbolic.numeric.identify.constants import (
     ITERATIONS,
     LITTLE,
@@ -26,7 +25,9 @@ from ptp_symbolic.numeric.identify.constants import (
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evaluate, mean_squares
 from ptp_symbolic.numeric.identify.evidence import (
+    Allowance,
     Deferred,
+    Threads,
     in_turn,
     is_recording,
     key_of,
@@ -34,10 +35,8 @@ from ptp_symbolic.numeric.identify.evidence import (
     stored,
 )
 from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
-from ptp_symbolic.numeric.identify.robust_loss import huber_loss, weighted_median
+from ptp_symbolic.numeric.identify.least_squares import Effort
 from ptp_symbolic.numeric.identify.run import Run, sizes
-from ptp_symbolic.numeric.identify.simulations import Effort
-from ptp_symbolic.numeric.identify.work import Allowance, Threads
 from ptp_symbolic.numeric.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
@@ -75,14 +74,14 @@ class Task:
 
     `whole` are the training runs as they were logged, `every_sample` the same or their windows, and
     `train` these with as many samples as the search needs (see `fewer_samples`); `windows` some
-    short and some longer ones (none where `train` are windows already), `few` those windows that
-    tell what a set is worth, `validate` the runs that are never fitted. `free` are the
+    short and some longer ones (none where `train` are windows already), `few` those windows by
+    which sets are compared first, `validate` the runs that are never fitted. `free` are the
     declared free parameters, `fixed` the values of all others (candidates vanish). `input_noise` is
     the declared noise (rms) of every input [nu] in its unit (None: as the logs show it),
     `declared_noise` names the outputs whose noise is declared, `resolution` is the noise of the
-    finest angle in rad, `robust_below` that of `robust_tuning`, `material` the share of what is
-    left that earns a name; noise has no colour where it is `white`. When its `allowance` is over, a
-    search tries nothing new.
+    finest angle in rad, `robust_below` that of `robust_tuning`, `material` the share of the sum of
+    squares that a name requires; noise counts as `white`, or with its autocorrelation. When its
+    `allowance` is over, a search tries nothing new.
     """
 
     model: Model
@@ -208,7 +207,7 @@ def _inherited(parent: Fit | None, free: Sequence[FreeParameter]) -> list[tuple[
 
 def tolerance_for(task: Task, share: float) -> Tolerance:
     """Integration tolerance that keeps angles good to a `share` of their noise: a coarser one makes
-    a misfit jump wherever friction lets go a sample later.
+    the deviance jump wherever friction breaks away a sample later.
     """
     return Tolerance.for_resolution(task.resolution, share)
 
@@ -237,7 +236,7 @@ def continued(
     )
     if new.fit.misleading is None and trial.fit.misleading is not None:
         new = replace(new, fit=replace(new.fit, misleading=trial.fit.misleading))
-    before, after = misfits([trial, new])
+    before, after = deviances([trial, new])
     return trial if new.fit.failed or after > before else new
 
 
@@ -272,10 +271,10 @@ def simulated_at(task: Task, fit: Fit, values: Mapping[str, float]) -> Sequence[
     return Deferred(key, len(fit.runs), None, found.light, found.made)
 
 
-def misfits(trials: Sequence[Trial]) -> list[float]:
+def deviances(trials: Sequence[Trial]) -> list[float]:
     """One number per trial to rank them by: n log(mean square), summed over the signals, so that no
-    signal outweighs another by its unit (likelihood with unknown variances: Bard, 1974, 4.9). What
-    is left is told to no better than simulations are good to (`ROUGH`).
+    signal outweighs another by its unit (likelihood with unknown variances: Bard, 1974, 4.9).
+    Residuals are known to no better than the error of simulations (`ROUGH`).
 
     Runs or windows far worse than usual count only linearly (Huber's loss); "usual" is that of the
     best trial.
@@ -298,7 +297,7 @@ def ranked(trials: Sequence[Trial]) -> list[Trial]:
     """Trials, the best fit first; of equal sets the best alone."""
     if not trials:
         return []
-    cost = misfits(trials)
+    cost = deviances(trials)
     order = sorted(range(len(trials)), key=lambda k: cost[k])
     best: dict[tuple[tuple[str, int], ...], Trial] = {}
     for k in order:
@@ -307,14 +306,14 @@ def ranked(trials: Sequence[Trial]) -> list[Trial]:
 
 
 def is_near(trial: Trial, others: Sequence[Trial]) -> bool:
-    """Whether a trial leaves at most e times the mean square of the best of others."""
-    cost = misfits([trial, *others])
+    """Whether the mean square residual of a trial is at most e times that of the best of others."""
+    cost = deviances([trial, *others])
     return cost[0] - min(cost) <= sum(run.size for run in trial.fit.runs)
 
 
-def is_alike(trial: Trial, other: Trial) -> bool:
-    """Whether two trials of one set leave the same, so that they end in one place."""
-    cost = misfits([trial, other])
+def is_same_end(trial: Trial, other: Trial) -> bool:
+    """Whether two trials of one set have the same deviance, so that they ended at one optimum."""
+    cost = deviances([trial, other])
     return abs(cost[0] - cost[1]) < LITTLE * sum(run.size for run in trial.fit.runs)
 
 

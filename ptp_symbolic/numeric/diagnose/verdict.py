@@ -1,6 +1,5 @@
-"""The verdict: which effects are confirmed, which cannot be told apart, and what is left.
-
-Why a verdict came out: the rules that decided it, each with the number it was held to.
+"""The verdict: which effects are confirmed, which are indistinguishable, whether the residual is
+noise; and the rules that decided it, each with the number that it was compared with.
 """
 
 from collections.abc import Mapping, Sequence
@@ -9,41 +8,61 @@ from typing import Any
 
 import numpy as np
 
-from ptp_symbolic.numeric.diagnose.along_rows import grown_along_motion
+from ptp_symbolic.numeric.diagnose.along_rows import extended_along_motion
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.confirmed_sets import (
+from ptp_symbolic.numeric.diagnose.confirm import (
+    ambiguous_value,
     confirmed,
-    denied,
-    doubtful,
-    leaner_rival,
+    rejected_on_validation,
     shortened,
-    simplest_alike,
+    simplest_alternative,
+    smaller_alternative,
 )
-from ptp_symbolic.numeric.diagnose.declared_fit import as_fitted_alone
-from ptp_symbolic.numeric.diagnose.findings import Refusals, Search, Step, looked_at
-from ptp_symbolic.numeric.diagnose.floor import (
-    Floor,
-    floor_of,
-    leaves_noise_alone,
-    leaves_unusual_noise,
-)
-from ptp_symbolic.numeric.diagnose.gain import Gain, p_value
-from ptp_symbolic.numeric.diagnose.groups import Rival, confusable, overtaking, rivals
-from ptp_symbolic.numeric.diagnose.held_out import (
+from ptp_symbolic.numeric.diagnose.gain import (
+    Gain,
     held_out_fit,
     held_out_gain,
-    is_borne_out,
-    is_quiet,
+    is_noise_alone,
+    is_validated,
     left_by_best_values,
+    p_value,
 )
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise, fitted_to_every_sample, left_over
-from ptp_symbolic.numeric.diagnose.refits import is_near_floor
-from ptp_symbolic.numeric.diagnose.seeker import Seeker
+from ptp_symbolic.numeric.diagnose.groups import (
+    Alternative,
+    better_alternative,
+    confusable,
+    refitted_alternatives,
+)
+from ptp_symbolic.numeric.diagnose.noise_floor import (
+    NoiseFloor,
+    carried_noise,
+    exceeds_usual_noise,
+    fitted_to_every_sample,
+    leaves_noise_alone,
+    leaves_white_noise,
+    noise_floor_of,
+    normalised_residual,
+)
+from ptp_symbolic.numeric.diagnose.refits import (
+    beside_declared,
+    better_over_same_runs,
+    fitted_over_windows,
+    is_near_noise_floor,
+    refitted_in,
+)
+from ptp_symbolic.numeric.diagnose.stepwise import (
+    Refusals,
+    Search,
+    Step,
+    StepwiseSearch,
+    looked_at,
+    step_of,
+)
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving, ranked
 from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, FALSE_ALARM, MOST
 from ptp_symbolic.numeric.identify.fit import Fit
-from ptp_symbolic.numeric.identify.replays import estimable
 from ptp_symbolic.numeric.identify.run import sizes
+from ptp_symbolic.numeric.identify.windows import estimable
 
 NOTHING_MISSING = "nothing_missing"
 EXPLAINED = "explained"
@@ -58,12 +77,11 @@ class Verdict:
 
     `declared` is the declared model fitted to every sample, and `final` the one with what is
     confirmed; the values of that are those of `estimated`: the same fit with what its intervals
-    need, or one to the torques along the motion. `compared` is its set as the
-    search compared it with others. By key, `gains` is what each of its effects gains, and
-    `confusable` are those that may stand in the place of each; `rivals` are such sets. `closest` is
-    the best set where nothing is confirmed, `refused` tells why candidates that gained were not
-    named. `floor` is that of `final`; `before` and `after` are the validation runs by the declared
-    and by the final model.
+    need, or one to the torques along the motion. `compared` is its set as the search compared it
+    with others. By key, `gains` is what each of its effects gains, and `confusable` are the
+    alternatives of each; `alternatives` are sets with them. `closest` is the best set where nothing
+    is confirmed, `refused` says why candidates that gained were not named. `floor` is that of
+    `final`; `before` and `after` are the validation runs by the declared and by the final model.
     """
 
     word: str
@@ -73,10 +91,10 @@ class Verdict:
     declared: Trial
     gains: Mapping[str, Gain]
     confusable: Mapping[str, tuple[str, ...]]
-    rivals: tuple[Rival, ...]
+    alternatives: tuple[Alternative, ...]
     closest: Trial | None
     refused: Mapping[str, str]
-    floor: Floor
+    floor: NoiseFloor
     before: Fit
     after: Fit
     held_out: Gain | None
@@ -88,17 +106,17 @@ class Verdict:
 
     @property
     def leaves_more(self) -> bool:
-        """Whether more than noise is left."""
+        """Whether the residual exceeds the noise."""
         return self.word in (PARTLY, UNEXPLAINED)
 
 
 def decide(found: Search) -> Verdict:
-    """Confirm the chosen set, find what it cannot be told from, and judge the validation runs.
+    """Confirm the chosen set, find its alternatives, and judge the validation runs.
 
-    Where training runs leave what noise of some colour may be, and validation runs show more, there
-    is no such noise: names are held to white noise then.
+    Where the residual of training runs may be autocorrelated noise, and that of validation runs
+    exceeds it, there is no such noise: residuals are compared with white noise then.
     """
-    found = as_fitted_alone(found)
+    found = with_declared_over_windows(found)
     verdict = _decided(found)
     quiet = leaves_noise_alone(verdict.final, verdict.floor)
     if verdict.word != PARTLY or not quiet or not np.any(verdict.floor.largest > 1.0):
@@ -110,20 +128,22 @@ def _decided(found: Search) -> Verdict:
     """The verdict, with noise as white as the task of the search says."""
     task = found.task
     refused = Refusals()
-    seeker = Seeker(task, found.declared, found.proposals, found.carried, found.tried)
-    seeker.follow(found.chosen)
-    trial, steps, alike = _settled(seeker, found.chosen, list(found.members), refused)
+    stepwise = StepwiseSearch(task, found.declared, found.proposals, found.carried, found.tried)
+    stepwise.follow(found.chosen)
+    trial, steps, alternatives = _settled(stepwise, found.chosen, list(found.members), refused)
     task.progress("fitting every sample, and simulating the validation runs")
     declared, *final = _to_every_sample(found, trial)
-    sets = _along_motion(seeker, trial, declared, sorted(refused.lawless))
-    led = _near_floor(seeker, sets)
-    if led is not None:
-        trial, steps, alike = _settled(seeker, *shortened(seeker, led), refused)
+    sets = _along_motion(stepwise, trial, declared, sorted(refused.contradicting))
+    near = _near_floor(stepwise, sets)
+    if near is not None:
+        trial, steps, alternatives = _settled(stepwise, *shortened(stepwise, near), refused)
         declared, *final = _to_every_sample(found, trial)
         sets = []
     if trial.candidates:
         gains = {s.candidate.key: s.gain for s in steps}
-        sets.append(_Set(trial, final[0], None, gains, confusable(trial, alike), tuple(alike)))
+        sets.append(
+            _Set(trial, final[0], None, gains, confusable(trial, alternatives), tuple(alternatives))
+        )
     return _judged(found, declared, sets, refused)
 
 
@@ -134,43 +154,45 @@ def _to_every_sample(found: Search, trial: Trial) -> list[Trial]:
 
 
 def _settled(
-    seeker: Seeker, chosen: Trial, members: list[Step], refused: Refusals
-) -> tuple[Trial, list[Step], list[Rival]]:
-    """What is confirmed of a chosen set, or of one that predicts better or is simpler and predicts
-    as well, and what of it validation runs do not deny; its steps, and the sets that it cannot be
-    told from. What is not, is noted in `refused` with the reason.
+    stepwise: StepwiseSearch, chosen: Trial, members: list[Step], refused: Refusals
+) -> tuple[Trial, list[Step], list[Alternative]]:
+    """What is confirmed of a chosen set, or of one that predicts better, or as well and is simpler,
+    without what the validation runs reject; its steps, and its alternatives. Everything else is
+    noted in `refused` with the reason.
     """
-    trial, steps, fit = confirmed(seeker, chosen, members, refused)
-    alike: list[Rival] = []
+    trial, steps, fit = confirmed(stepwise, chosen, members, refused)
+    alternatives: list[Alternative] = []
     while trial.candidates:
-        alike = rivals(seeker, trial, fit)
-        better = overtaking(trial, alike, seeker.task.material)
+        alternatives = refitted_alternatives(stepwise, trial, fit)
+        better = better_alternative(trial, alternatives, stepwise.task.material)
         if better is not None:
-            seeker.tried.others.append(trial)
+            stepwise.tried.others.append(trial)
             trial, steps, fit = confirmed(
-                seeker, *shortened(seeker, seeker.restarted(better)), refused
+                stepwise, *shortened(stepwise, stepwise.restarted(better)), refused
             )
-            alike = []
+            alternatives = []
             continue
-        leaner = leaner_rival(seeker, trial, alike)
+        leaner = smaller_alternative(stepwise, trial, alternatives)
         if leaner is not None:
-            seeker.tried.others.append(trial)
-            trial, steps, fit = confirmed(seeker, *shortened(seeker, leaner), refused)
-            alike = []
+            stepwise.tried.others.append(trial)
+            trial, steps, fit = confirmed(stepwise, *shortened(stepwise, leaner), refused)
+            alternatives = []
             continue
-        trial, steps, fit, alike = simplest_alike(seeker, trial, steps, fit, alike)
-        floor = floor_of(seeker.task, trial, seeker.carried)
-        step = doubtful(trial, steps, confusable(trial, alike), floor)
+        trial, steps, fit, alternatives = simplest_alternative(
+            stepwise, trial, steps, fit, alternatives
+        )
+        floor = noise_floor_of(stepwise.task, trial, stepwise.carried)
+        step = ambiguous_value(trial, steps, confusable(trial, alternatives), floor)
         why = "alternatives predict as well, and the residual exceeds the noise"
         if step is None:
-            step = denied(seeker.task, trial, steps)
+            step = rejected_on_validation(stepwise.task, trial, steps)
             why = "the validation runs are predicted significantly better without it"
         if step is None:
             break
         refused.note(step.candidate.key, why)
-        trial, steps, fit = confirmed(seeker, *shortened(seeker, step.without), refused)
-        alike = []
-    return trial, steps, alike
+        trial, steps, fit = confirmed(stepwise, *shortened(stepwise, step.without), refused)
+        alternatives = []
+    return trial, steps, alternatives
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,34 +206,34 @@ class _Set:
     estimated: Fit | None
     gains: Mapping[str, Gain]
     confusable: Mapping[str, tuple[str, ...]]
-    rivals: tuple[Rival, ...]
+    alternatives: tuple[Alternative, ...]
 
 
 def _along_motion(
-    seeker: Seeker, trial: Trial, declared: Trial, lawless: Sequence[str]
+    stepwise: StepwiseSearch, trial: Trial, declared: Trial, contradicting: Sequence[str]
 ) -> list[_Set]:
-    """Where a trial leaves more than noise, the set that it grows to along the measured motion;
-    `lawless` as in `grown_along_motion`.
+    """Where the residual of a trial exceeds the noise, the set to which it is extended along the
+    measured motion; `contradicting` as in `extended_along_motion`.
     """
-    task = seeker.task
-    if leaves_noise_alone(trial, floor_of(task, trial, seeker.carried)):
+    task = stepwise.task
+    if leaves_noise_alone(trial, noise_floor_of(task, trial, stepwise.carried)):
         return []
-    found = grown_along_motion(task, seeker.proposals, trial, declared.fit.runs, lawless)
+    found = extended_along_motion(task, stepwise.proposals, trial, declared.fit.runs, contradicting)
     if found is None:
         return []
     final = found.trial
     compared = fitted(task, final.candidates, final.values, None, executor=task.executor)
-    return [_Set(compared, final, found.fit, found.gains, found.alike, ())]
+    return [_Set(compared, final, found.fit, found.gains, found.alternatives, ())]
 
 
-def _near_floor(seeker: Seeker, sets: Sequence[_Set]) -> Trial | None:
-    """A set found along the motion, fitted to the outputs from there, where those come near their
-    floor: no remainder hides it in them then, they know its values better, and judge it as any
-    other. None where they do not.
+def _near_floor(stepwise: StepwiseSearch, sets: Sequence[_Set]) -> Trial | None:
+    """A set found along the motion, fitted to the outputs from there, where their residual comes
+    near the noise floor: nothing hides it in them then, they determine its values better, and judge
+    it as any other. None where they do not.
     """
-    begun = [fitted(seeker.task, s.final.candidates, s.final.values, None) for s in sets]
-    near = [t for t in halving(seeker.task, begun, 1) if is_near_floor(t)]
-    return seeker.polished(near[0]) if near else None
+    begun = [fitted(stepwise.task, s.final.candidates, s.final.values, None) for s in sets]
+    near = [t for t in halving(stepwise.task, begun, 1) if is_near_noise_floor(t)]
+    return stepwise.polished(near[0]) if near else None
 
 
 def _judged(found: Search, declared: Trial, sets: Sequence[_Set], refused: Refusals) -> Verdict:
@@ -225,8 +247,8 @@ def _judged(found: Search, declared: Trial, sets: Sequence[_Set], refused: Refus
         estimated = one.estimated or estimable(final.fit, task.input_noise, task.executor)
         floor, quiet = _floor_and_quiet(task, final, after, estimated)
         at_noise = leaves_noise_alone(final, floor)
-        unusual = at_noise and leaves_unusual_noise(final, floor)
-        if held_out is None or is_borne_out(held_out, quiet, unusual, task.material):
+        unusual = at_noise and exceeds_usual_noise(final, floor)
+        if held_out is None or is_validated(held_out, quiet, unusual, task.material):
             break
         why = "reduces the error of the validation runs too little, or not significantly"
         for key in final.keys:
@@ -241,7 +263,7 @@ def _judged(found: Search, declared: Trial, sets: Sequence[_Set], refused: Refus
         declared,
         one.gains,
         one.confusable,
-        one.rivals,
+        one.alternatives,
         next(iter(simulated), _closest(found)) if word == UNEXPLAINED else None,
         {key: why for key, why in refused.why.items() if key not in final.keys},
         floor,
@@ -251,14 +273,16 @@ def _judged(found: Search, declared: Trial, sets: Sequence[_Set], refused: Refus
     )
 
 
-def _floor_and_quiet(task: Task, final: Trial, after: Fit, estimated: Fit) -> tuple[Floor, bool]:
+def _floor_and_quiet(
+    task: Task, final: Trial, after: Fit, estimated: Fit
+) -> tuple[NoiseFloor, bool]:
     """The floor of the final model, and whether its validation runs `after` show noise alone, with
     some values in the joint confidence region of the `estimated` ones.
     """
-    floor = floor_of(task, final, carried_noise(task, final.fit))
+    floor = noise_floor_of(task, final, carried_noise(task, final.fit))
     here = replace(floor, carried=carried_noise(task, after))
     left = left_by_best_values(after, estimated, here.level, task.executor)
-    return floor, is_quiet(left, sizes(after.runs), here, final.fit)
+    return floor, is_noise_alone(left, sizes(after.runs), here, final.fit)
 
 
 def _closest(found: Search) -> Trial | None:
@@ -269,7 +293,7 @@ def _closest(found: Search) -> Trial | None:
 
 
 def word_of(trial: Trial, named: Mapping[str, tuple[str, ...]], quiet: bool) -> str:
-    """The word for a confirmed set that leaves noise alone, or not (`quiet`), in any run."""
+    """The word for a confirmed set whose residual is noise alone (`quiet`) in all runs, or not."""
     if not trial.candidates:
         return NOTHING_MISSING if quiet else UNEXPLAINED
     if not quiet:
@@ -281,15 +305,15 @@ SHARE = "share by which the sum of squares on blocks left out falls"
 CERTAIN = "lower end of the 95 % interval of that share"
 CHANCE = "chance of finding it where it is not"
 VALIDATED = "share by which the sum of squares of the validation runs falls"
-TRAINING = "residual of {signal} on the training runs, over the largest that noise may leave"
-VALIDATION = "residual of {signal} on the validation runs, over the largest that noise may leave"
-ALIKE = "other effects that do as well in its place"
+TRAINING = "residual of {signal} on the training runs, over the largest that may be noise"
+VALIDATION = "residual of {signal} on the validation runs, over the largest that may be noise"
+ALIKE = "alternatives that predict as well in its place"
 
 
 def reasons(found: Search, verdict: Verdict, compared: int) -> list[dict[str, Any]]:
-    """A row for every rule and what it was asked `about` (the key of an effect; None: the whole
-    model): the `value`, whether it has to be `at_least` or `at_most` the `limit`, and whether it
-    `holds`. `compared` is the number of structures that were fitted.
+    """A row for every rule and what it is `about` (the key of an effect; None: the whole model):
+    the `value`, whether it has to be `at_least` or `at_most` the `limit`, and whether it `holds`.
+    `compared` is the number of structures that were fitted.
     """
     rows = []
     for candidate in verdict.final.candidates:
@@ -300,7 +324,7 @@ def reasons(found: Search, verdict: Verdict, compared: int) -> list[dict[str, An
         rows.append(_row(None, VALIDATED, verdict.held_out.share, "at_least", least))
     most = verdict.floor.most
     for text, fit in ((TRAINING, verdict.final.fit), (VALIDATION, verdict.after)):
-        for signal, ratio in zip(fit.runs[0].signals, left_over(fit) / most, strict=True):
+        for signal, ratio in zip(fit.runs[0].signals, normalised_residual(fit) / most, strict=True):
             rows.append(_row(None, text.format(signal=signal), ratio, "at_most", ABOVE_NOISE))
     return rows
 
@@ -342,3 +366,39 @@ def _row(about: str | None, rule: str, value: float, side: str, limit: float) ->
         side: float(limit),
         "holds": bool(holds),
     }
+
+
+def with_declared_over_windows(found: Search) -> Search:
+    """The search with its declared model fitted over windows too, as by `fit_declared`, where it
+    ended before that and its residual exceeds white noise: gains are those over the best fit of the
+    declared model.
+    """
+    task = found.task
+    if (
+        found.is_over_windows
+        or not task.windows
+        or leaves_white_noise(found.declared, found.carried)
+    ):
+        return found
+    task.progress("fitting the declared model over windows")
+    part, after = fitted_over_windows(replace(task, candidates=()), found.proposals)
+    if [run.name for run in part.train] != [run.name for run in task.train]:
+        after = refitted_in(task, after)
+    best = better_over_same_runs(found.declared, after)
+    if best is found.declared:
+        return replace(found, is_over_windows=True)
+    chosen = found.chosen if found.chosen.candidates else best
+    if chosen.candidates:
+        chosen = beside_declared(task, chosen, best, found.carried)
+    members = tuple(
+        step_of(chosen, s.candidate, s.without if s.without.candidates else best)
+        for s in found.members
+    )
+    return replace(
+        found,
+        declared=best,
+        chosen=chosen,
+        members=members,
+        is_over_windows=True,
+        is_taken_over=False,
+    )

@@ -6,14 +6,20 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.diagnose.linear import stacked_jacobian
+from ptp_symbolic.numeric.diagnose.responses import stacked_jacobian
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, limits, slopes, to_search
 from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.intervals import project_out
-from ptp_symbolic.numeric.identify.least_squares import Problem, minimise
+from ptp_symbolic.numeric.identify.least_squares import (
+    Effort,
+    Problem,
+    all_values,
+    minimise,
+    problem_of,
+    simulations_of,
+)
 from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.identify.simulations import Effort, all_values, problem_of, simulations_of
 from ptp_symbolic.numeric.runtime.model import Model
 
 FloatArray = NDArray[np.float64]

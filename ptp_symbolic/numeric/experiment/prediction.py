@@ -27,12 +27,12 @@ from ptp_symbolic.numeric.experiment.contender import (
     spreads,
 )
 from ptp_symbolic.numeric.experiment.machine import SCENARIOS, Conditions, Scenario, logged, play
+from ptp_symbolic.numeric.identify.blocks import huber_loss
 from ptp_symbolic.numeric.identify.constants import TUNING
 from ptp_symbolic.numeric.identify.coordinates import slopes
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
-from ptp_symbolic.numeric.identify.robust_loss import huber_loss
+from ptp_symbolic.numeric.identify.least_squares import POLISH
 from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.identify.simulations import POLISH
 
 FloatArray = NDArray[np.float64]
 

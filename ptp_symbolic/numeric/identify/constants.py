@@ -20,7 +20,7 @@ LAGS = 25  # samples; lags of the residual tests; usual (Ljung, 1999, 16.6)
 MATERIAL = 0.1  # 1; share of a loss, or error, below which nothing earns a name or counts; stated
 MOST = 0.5  # 1; share that is most of a whole; definition
 PLAUSIBLE_FACTOR = 2.0  # 1; by which a declared value may be off, a start by its square; stated
-ABOVE_NOISE = 1.0 + MATERIAL  # 1; rms over the floor from which on more than noise is left; derived
+ABOVE_NOISE = 1.0 + MATERIAL  # 1; rms over the noise floor that is more than noise; derived
 UNALIKE = 1e-3  # 1; false alarms of the test for larger validation windows; stated level
 FEWEST_BLOCKS = 12  # 1; blocks: Student's interval is then 12 % wider than a normal one; derived
 MOST_BLOCKS = 200  # 1; blocks: the error of a standard deviation is then 5 %; derived
@@ -43,7 +43,7 @@ CYCLES = 3  # 1; of two in turn: fits, weights and fits, states that are probed;
 TRIED = 3  # 1; alternatives that are followed; scaled
 LARGEST = 3  # effects; that a set may have, or gain after the first choice; stated
 SCREENED = 2  # sets, candidates; of those begun with few iterations that go on; scaled
-SCANNED = 100  # frequencies; that can be told apart, at most, of a wave simulated at all; scaled
+SCANNED = 100  # frequencies; that can be resolved, at most, of a wave simulated at all; scaled
 REFINEMENTS = 2  # 1; Gauss-Newton steps of a proposed set; scaled
 REPLAYS = 100  # runs; replayed with noisy inputs: a standard deviation is good to 7 %; derived
 ROUGH = 1e-2  # 1; error of simulations over the noise, while searching; scaled
@@ -52,7 +52,7 @@ LITTLE = 2.0 * ROUGH  # 1; change of a mean square that such errors can make; de
 # Windows and rows
 SHORT = 1.0  # s; window beside the time constants of drives (0.05 s); scaled
 SEARCH_PERIOD = 5e-3  # s; between samples of a search, at most; scaled
-START_SPAN = 0.1  # s; motion that tells a rate; scaled
+START_SPAN = 0.1  # s; motion that determines a rate; scaled
 ANYWHERE = 1e3  # rad/s, half gaps; beyond any start of a machine; definition
 LEAST_START = 5  # samples; of a parabola with two degrees of freedom left; derived
 ALLOWED_RISE = 2.0  # 1; of the drift by input noise in a window, over the shortest one's; scaled
@@ -66,11 +66,11 @@ LEAST_CYCLES = 3  # 1/range; slower waves are like any slow change, or a taper (
 BINS_PER_CYCLE = 4.0  # 1; of the highest frequency of a scan: a bin dims it by 10 %; derived
 ATTENUATED = 2.0  # 1/window; of such a wave an average leaves 11 %; derived
 DECLARED_AMOUNT = 0.05  # 1; share by which a declared value is changed to see its effect; scaled
-BINS = 16  # 1; of a map of what is left, of half a gap; definition
+BINS = 16  # 1; of a map of the residual, of half a gap; definition
 
 # Noise of a signal
 ORDER = 5  # 1; differences: a motion at a tenth of the sampling rate leaves 0.6 %; derived
-SEGMENT = 64  # samples; of a periodogram: poles up to 0.95 are told from white noise; tested
+SEGMENT = 64  # samples; of a periodogram: poles up to 0.95 are not white noise; tested
 
 # Steps
 STEP = 0.02  # search coordinates, starts; of differences, as far as intervals reach; scaled

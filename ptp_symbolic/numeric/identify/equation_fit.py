@@ -1,7 +1,8 @@
-"""Fit parameters to the rows of the equation space: bounded, robust, nearly linear least squares.
+"""Fit parameters to the weak-form rows: bounded, robust, nearly linear least squares.
 
-The start of every simulation: inertia, friction and the strength of most effects are found from far
-away, for their rows are linear in them (inverse dynamic identification: Gautier and Khalil, 1990).
+The initial values of every simulation: inertia, friction and the strength of most effects are found
+from far away, for their rows are linear in them (inverse dynamic identification: Gautier and
+Khalil, 1990).
 """
 
 from collections.abc import Mapping, Sequence
@@ -41,7 +42,7 @@ def blocks_in_time(run: IntArray, time: FloatArray) -> IntArray:
 
 def robust_scale(rows: FloatArray, equation: IntArray) -> FloatArray:
     """Standard deviation [n] of each row, by the median of its `equation` [n] (Huber, 1981); rows
-    that leave nothing tell none: a current that is rounded is exactly zero while a drive is off.
+    without a residual give none: a current that is rounded is exactly zero while a drive is off.
     """
     scale = np.ones(len(rows))
     for number in np.unique(equation):
@@ -71,9 +72,9 @@ def fit_equations(
     Gauss-Newton steps within bounds, begun at `values` (all parameters of the model).
 
     A prior of one start value (or one scale) around the start of every parameter keeps those in
-    place that the rows do not see; thousands of rows, which overlap, outweigh it where they do.
-    Where a step leads to values at which there are no finite rows, it is not taken. Raises
-    InputError for `values` out of bounds.
+    place that the rows do not see; thousands of rows, which overlap, outweigh it where they do. A
+    step to values at which there are no finite rows is not taken. Raises InputError for `values`
+    out of bounds.
     """
     equation, run, time = space.labels()
     blocks = len(np.unique(np.column_stack([equation, blocks_in_time(run, time)]), axis=0))
@@ -121,8 +122,8 @@ def linearised(
     own_torque: bool = False,
 ) -> Linearised:
     """The rows [n] and their difference quotients [n, nf] with `free` at the values `here`, the
-    quotients with the model's `own_torque` if asked for (see `EquationSpace.own_torque`). Raises
-    InputError for `values` out of bounds.
+    quotients with the model's `own_torque` where it is true (see `EquationSpace.own_torque`).
+    Raises InputError for `values` out of bounds.
     """
     model = space.model
     names = list(model.parameter_names)

@@ -1,10 +1,9 @@
 """Residuals of a run and their Jacobians by parameters and by the unknown initial state.
 
-What no sensor shows and soon forgets, where a window begins: the winding current of a motor.
-
-It follows the motion and the input before the window as if it had settled there, the reduced model
-of fast states (Kokotovic, Khalil and O'Reilly, 1986, 1.2): from none, a current would come up
-within the window, and a joint that slides would start a little behind.
+Where a window begins, a fast state that no sensor shows, such as the current of a winding, follows
+the motion and the input before as if it had settled there: the reduced model of fast states
+(Kokotovic, Khalil and O'Reilly, 1986, 1.2). From zero, a current would come up within the window,
+and a joint that slides would start a little behind.
 """
 
 from collections.abc import Sequence
@@ -303,3 +302,11 @@ def evaluate(
     split = len(columns)
     end = None if failed else found.x[-1].copy()
     return Evaluation(r, j[:, :split], j[:, split:].copy(), failed, end)
+
+
+def residual_of(
+    model: Model, p: FloatArray, tolerance: Tolerance, run: Run, z: FloatArray
+) -> FloatArray | None:
+    """Weighted residual [k * ny] of a run at p [np]; None where the simulation fails."""
+    e = evaluate(model, run, p, z, np.zeros(0, dtype=np.int64), False, tolerance)
+    return None if e.failed else e.residual

@@ -2,36 +2,130 @@
 
 A diagnosis is a deterministic function of few expensive evaluations: fits, and numbers that are
 computed from their residuals and Jacobians. Each of them is recorded under a digest of its
-arguments. Where all of them are known, the same diagnosis simulates nothing.
+arguments. Where all of them are known, the same diagnosis simulates nothing. Fits are recorded
+without residuals and Jacobians, which are hundreds of times as large: these are simulated again, at
+the values of the fit, where they are needed after all.
 
-Fits are recorded without residuals and Jacobians, which are hundreds of times as large: these are
-simulated again, at the values of the fit, if they are asked for after all.
+The samples that are simulated are counted: a search ends at a number of them that the speed of a
+machine does not change.
 """
 
 import hashlib
 import struct
 import threading
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
-from concurrent.futures import Executor, Future
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager
-from contextvars import ContextVar
-from dataclasses import dataclass, field, fields, is_dataclass
+from contextvars import ContextVar, copy_context
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import wraps
+from math import inf
 from typing import Any, Generic, ParamSpec, TypeVar, overload
 
 import numpy as np
 
-from ptp_symbolic.numeric.identify.constants import KEY_BYTES
-from ptp_symbolic.numeric.identify.work import Work, tallied, uncounted
+from ptp_symbolic.numeric.identify.constants import KEY_BYTES, WITH_TANGENTS
 
-Arguments = ParamSpec("Arguments")
-Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 
+@dataclass(eq=False)
+class Work:
+    """Samples simulated so far, all threads together; one with sensitivities counts as three."""
+
+    samples: int = 0
+    _lock: threading.Lock = field(default_factory=threading.Lock, repr=False)
+
+    @property
+    def evidence_parts(self) -> tuple[()]:
+        """Nothing that is evaluated depends on it."""
+        return ()
+
+    def add(self, samples: int, tangents: bool = False) -> None:
+        """Count a run that was simulated, also in every `tallied` part that it belongs to."""
+        tallies = _TALLIES.get()
+        if tallies is None:
+            return
+        with self._lock:
+            for work in (self, *tallies):
+                work.samples += samples * (WITH_TANGENTS if tangents else 1)
+
+
+# The parts of the work that are under way; None: what is simulated does not count.
+_TALLIES: ContextVar[tuple[Work, ...] | None] = ContextVar("tallies", default=())
+
+
+@contextmanager
+def tallied() -> Iterator[Work]:
+    """What is simulated meanwhile, in this thread and in `Threads` that work for it."""
+    own = Work()
+    outer = _TALLIES.get()
+    token = _TALLIES.set(None if outer is None else (*outer, own))
+    try:
+        yield own
+    finally:
+        _TALLIES.reset(token)
+
+
+@contextmanager
+def uncounted() -> Iterator[None]:
+    """What is simulated meanwhile does not count."""
+    token = _TALLIES.set(None)
+    try:
+        yield
+    finally:
+        _TALLIES.reset(token)
+
+
+class Threads(ThreadPoolExecutor):
+    """Threads in which each piece of work has the context of its caller."""
+
+    def submit(self, fn: Callable[..., Result], /, *args: Any, **kwargs: Any) -> "Future[Result]":
+        """Begin a piece of work."""
+        return super().submit(copy_context().run, fn, *args, **kwargs)
+
+
+@dataclass(frozen=True, eq=False)
+class Allowance:
+    """What a search may simulate, and as a last stop how long it may take.
+
+    `begun` samples of `work` and the time `since` (s of `time.monotonic`) were when it began;
+    `samples` and `seconds` are its limits. The samples are the same on every machine, and so is
+    what a search that ends by them has found; what ends by the clock depends on the machine.
+    """
+
+    work: Work = field(default_factory=Work)
+    samples: float = inf
+    seconds: float = inf
+    begun: int = 0
+    since: float = field(default_factory=time.monotonic)
+
+    @property
+    def is_out_of_time(self) -> bool:
+        """Whether the clock has stopped it."""
+        return time.monotonic() - self.since > self.seconds
+
+    @property
+    def is_over(self) -> bool:
+        """Whether nothing new may begin."""
+        return self.work.samples - self.begun > self.samples or self.is_out_of_time
+
+    def rest(self, least: float) -> "Allowance":
+        """What remains of it now, but the share `least` of both limits at least."""
+        done, now = self.work.samples, time.monotonic()
+        samples = max(self.samples - (done - self.begun), least * self.samples)
+        seconds = max(self.seconds - (now - self.since), least * self.seconds)
+        return replace(self, samples=samples, seconds=seconds, begun=done, since=now)
+
+
+Arguments = ParamSpec("Arguments")
+Item = TypeVar("Item")
+
+
 class NotStoredError(Exception):
-    """A simulation was asked for where only stored evidence may be used; `missing` are the keys
-    of the evaluations that asked for it, so many as were asked for side by side.
+    """A simulation was needed where only stored evidence may be used; `missing` are the keys of the
+    evaluations that needed it, all that were requested side by side.
     """
 
     def __init__(self, missing: Set[str] = frozenset()) -> None:
@@ -112,7 +206,7 @@ def refuse_unstored() -> None:
 
 class InTurn(Executor):
     """One piece of work after the other, for stored evidence: where some of it is missing, all that
-    was asked for side by side is looked up before NotStoredError says which.
+    was requested side by side is looked up before NotStoredError says which.
     """
 
     def submit(self, fn: Callable[..., Result], /, *args: Any, **kwargs: Any) -> "Future[Result]":
@@ -209,7 +303,7 @@ def is_recording() -> bool:
 
 
 class Deferred(Sequence[Item], Generic[Item]):
-    """Items that are known by a `key`, and made where they are first asked for; that counts as no
+    """Items that are known by a `key`, and made where they are first needed; that counts as no
     work. `squares` are what most ask of them, so that they need not be made. Where nothing has to
     `make` them, they are `items`.
     """

@@ -1,27 +1,23 @@
 """Confidence intervals that allow for residuals correlated in time.
 
-The residuals of a simulation error fit are never white: what the noise of an input leaves in an
-angle may last for a whole run. The covariance is that of a jackknife over a few long blocks of
-time, the unknown starts projected out. Intervals never get narrower than those of white noise, as
-large as declared or as what is left, or of noise with the colour of what is left, beside the noise
-of the inputs as replays carry it to the outputs.
+The residuals of a simulation error fit are never white: the noise of an input, propagated to an
+angle, may last for a whole run. The covariance is that of a jackknife over a few long blocks of
+time, the unknown initial states projected out. Intervals never get narrower than those of white
+noise, as large as declared or as the residual, or of noise with the autocorrelation of the
+residual, beside the propagated noise of the inputs: of what few samples show, as those about one
+breakaway, no block of time can be left out to judge it.
 
-Errors of a fit under noise that has the same colour everywhere.
+Blocks of time within logs show how well one value suits them all, not how far the machine of
+another day is from it, whose friction is that of another temperature: where logs differ by more
+than blocks within each make likely, every log counts as one observation.
 
-What few samples tell, as those about one breakaway, no block of time can be left out to judge. The
-covariance of the residual over all samples says how far such a sum scatters.
-
-Values that differ from log to log.
-
-Blocks of time within logs tell how well one value suits them all. They do not tell how far the
-machine of another day is from it, whose friction is that of another temperature: where logs differ
-by more than blocks within each make likely, every log counts as one observation.
-
-The joint confidence region of the values of a fit, and the values in it that suit other runs.
+Finite differences replace the derivatives of a finished fit that miss what these see: friction that
+holds, or breaks away a sample later, makes the residual a staircase of a parameter.
 """
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,13 +38,24 @@ from ptp_symbolic.numeric.identify.blocks import (
 from ptp_symbolic.numeric.identify.constants import (
     FALSE_ALARM,
     FEWEST_BLOCKS,
+    MISLEADING,
+    MOST,
     NOTHING,
+    ROUGH,
     SAME,
+    STEP,
     TEST_ALARM,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, slopes, to_search, wrapped
-from ptp_symbolic.numeric.identify.evidence import recorded
+from ptp_symbolic.numeric.identify.evaluate import Evaluation, mean_squares
+from ptp_symbolic.numeric.identify.evidence import derived, is_recording, recorded
 from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.least_squares import (
+    POLISH,
+    Effort,
+    problem_of,
+    simulations_of,
+)
 from ptp_symbolic.numeric.identify.run import by_log
 
 BoolArray = NDArray[np.bool_]
@@ -79,9 +86,9 @@ def reach_between_logs(logs: Sequence[tuple[FloatArray, FloatArray]], signals: i
     and McCaffrey, 2002) with Student's distribution; from the residual [k * signals] of every log
     and its derivatives [k * signals, nf] by the parameters, at their common optimum.
 
-    Zero where logs do not differ clearly (see `chance_of_scatter`), and for all parameters where
-    there are fewer than three, or where one of them alone tells some combination of parameters:
-    without it, the errors of all others would show.
+    Zero where logs do not differ significantly (see `chance_of_scatter`), and for all parameters
+    where there are fewer than three, or where one of them alone identifies some combination of
+    parameters: without it, the errors of all others would show.
     """
     nothing = np.zeros(logs[0][1].shape[1])
     if len(logs) < 3:
@@ -141,8 +148,8 @@ def joint_region(fit: Fit) -> FloatArray:
     Directions that the data do not see are left out.
 
     Axes count as uncorrelated, as they are beside white noise. Were all k of them the same normal
-    number z, as where one slow mode is left that all follow, the truth would be held where k z^2
-    is below the 99 % quantile of chi squared with k degrees: in 97 % for two, in 87 % for ten.
+    number z, as where one slow mode remains that all follow, the truth would be held where k z^2 is
+    below the 99 % quantile of chi squared with k degrees: in 97 % for two, in 87 % for ten.
     """
     axes, variances, degrees = axes_of(fit)
     tail = 0.5 * TEST_ALARM
@@ -195,7 +202,7 @@ class Estimate:
 @recorded(Estimate)
 def estimates(fit: Fit) -> tuple[Estimate, ...]:
     """Values of the free parameters of `fit` with 95 % confidence intervals (Student's t), of the
-    mean over logs where these differ clearly.
+    mean over logs where these differ significantly.
     """
     if not fit.free:
         return ()
@@ -278,10 +285,10 @@ def chance_of(
     a `covariance` [k, k] that has `degrees` [k] of freedom: twice the smaller of two (Bonferroni).
 
     One is Hotelling's T^2 (1931) with the fewest degrees: coordinates that trade for each other are
-    clear together. The other is Student's t of the clearest coordinate with its own degrees, times
-    k: where one block tells one of them alone, the others may be beyond doubt. Coordinates that are
-    not `seen` [k] alone, only in combination, have no t. One without any error is told by nothing
-    and left out; 1 where all are.
+    significant together. The other is Student's t of the most significant coordinate with its own
+    degrees, times k: where one block alone identifies one of them, the others may be beyond doubt.
+    Coordinates that are not `seen` [k] alone, only in combination, have no t. One without any error
+    is not identified and left out; 1 where all are.
     """
     error = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     told = error > NOTHING * np.abs(away)
@@ -385,10 +392,10 @@ def _squared_reach_of_inputs(fit: Fit, inverse: FloatArray, columns: FloatArray)
     """Squared half width [nf] of the 95 % intervals that the noise of the inputs alone makes: every
     replay of every run shifts the coordinates, each run independently.
     """
-    if not fit.shaken:
+    if not fit.by_input_noise:
         return np.zeros(len(inverse))
-    ends = np.cumsum([len(changes) for changes in fit.shaken])
-    parts = zip(np.split(columns, ends[:-1]), fit.shaken, strict=True)
+    ends = np.cumsum([len(changes) for changes in fit.by_input_noise])
+    parts = zip(np.split(columns, ends[:-1]), fit.by_input_noise, strict=True)
     every = [(c.T @ changes, max(changes.shape[1], 1)) for c, changes in parts]
     shifts = np.column_stack([inverse @ moved / np.sqrt(count) for moved, count in every]).T
     reach = stats.t.ppf(0.975, degrees_of_freedom(shifts, centred=False))
@@ -428,3 +435,73 @@ def project_out(jacobian: FloatArray, nuisance: FloatArray) -> FloatArray:
     kept = np.abs(np.diag(triangle)) > NOTHING * max(np.max(np.abs(triangle)), 1e-300)
     basis = basis[:, kept]
     return jacobian - basis @ (basis.T @ jacobian)
+
+
+def with_finite_differences(
+    fit: Fit, executor: Executor | None = None, reach: FloatArray | None = None
+) -> Fit:
+    """`fit` with finite differences in its Jacobians where the tangents at the optimum miss what
+    these see: friction that holds, or breaks away a sample later, makes the residual a staircase of
+    a parameter.
+
+    The differences go over a usual step, or as far as the parameters may be off where that `reach`
+    [nf] in search coordinates is given. Where they replace tangents and give a parameter far better
+    than their step, that is too long: one jump somewhere in it says that the parameter is no
+    further off, but not where it is. So it is shortened until the interval is about as long; where
+    it never is, the tangents stay.
+    """
+    if not fit.free or fit.failed:
+        return fit
+    if not is_recording():
+        return _with_finite_differences(fit, executor, reach)
+
+    def changed() -> Sequence[Evaluation]:
+        return _with_finite_differences(fit, executor, reach).evaluations
+
+    squares = mean_squares(fit.evaluations, fit.runs)
+    return replace(fit, evaluations=derived("finite differences", (fit, reach), changed, squares))
+
+
+def _with_finite_differences(fit: Fit, executor: Executor | None, reach: FloatArray | None) -> Fit:
+    """See `with_finite_differences`, of a fit that has free parameters and has not failed."""
+    effort = Effort(tolerance=fit.tolerance, secants=STEP)
+    simulations = simulations_of(fit.model, fit.runs, fit.free, fit.values, effort, executor)
+    problem = problem_of(simulations, effort)
+    assert problem.refine is not None
+    phi = to_search(fit.free, fit.values)
+    here = problem.evaluate(phi, fit.z, True)
+    fit = replace(fit, evaluations=tuple(here))
+    steps = np.full(len(phi), STEP) if reach is None else np.minimum(reach, STEP)
+    steps = np.where(steps > 0.0, steps, STEP)
+    wanted = np.ones(len(phi), dtype=np.bool_)
+    for _ in range(POLISH):
+        shifts = [(run, int(c)) for run in range(len(here)) for c in np.flatnonzero(wanted)]
+        finite = replace(problem.refine, step=steps, chosen=shifts)(phi, fit.z, here)
+        blind = [_is_blind(*pair, steps) for pair in zip(here, finite, strict=True)]
+        parts = zip(blind, here, finite, strict=True)
+        columns = [np.where(b, f.by_parameter, e.by_parameter) for b, e, f in parts]
+        fit = _with_columns(fit, columns, wanted)
+        if reach is not None:
+            return fit
+        found = reaches(fit)
+        wanted &= np.any(blind, axis=0) & (found < MOST * steps)
+        if not wanted.any():
+            return fit
+        steps = np.where(wanted, np.maximum(found, MOST**2 * steps), steps)
+    return _with_columns(fit, [e.by_parameter for e in here], wanted)
+
+
+def _with_columns(fit: Fit, columns: Sequence[FloatArray], wanted: BoolArray) -> Fit:
+    """`fit` with the `wanted` [nf] columns of other Jacobians, one per run."""
+    parts = zip(fit.evaluations, columns, strict=True)
+    every = [replace(e, by_parameter=np.where(wanted, c, e.by_parameter)) for e, c in parts]
+    return replace(fit, evaluations=tuple(every))
+
+
+def _is_blind(at_point: Evaluation, finite: Evaluation, steps: FloatArray) -> BoolArray:
+    """Which tangents [nf] of a run miss what differences over `steps` [nf] see, beyond what errors
+    of the simulation may change.
+    """
+    seen, size = (np.linalg.norm(e.by_parameter, axis=0) for e in (at_point, finite))
+    by_errors = ROUGH * np.sqrt(len(at_point.residual)) / steps
+    return np.asarray((size > by_errors) & (seen < MISLEADING * size))

@@ -1,33 +1,20 @@
-"""The noise of a measured signal: how large, and how it is coloured.
+"""The noise of a measured signal: how large, and how it is correlated in time.
 
 Differences of high order of a signal remove its smooth motion and keep its white noise, which gives
-a first size. What a model leaves shows the colour: its spectrum above the frequencies of the motion
-is that of a first-order autoregression plus white noise, whose likelihood (Whittle, 1953) gives the
-whole variance, also below. Before any fit, only the upper half of the spectrum is free of motion.
+a first size. The residual of a model shows the autocorrelation: its spectrum above the frequencies
+of the motion is that of a first-order autoregression plus white noise, whose likelihood (Whittle,
+1953) gives the whole variance, also below.
 
-Whether residuals scatter as noise does, which does not know what the machine does.
+Three tests separate noise from model error. Noise of a sensor is of one size, a model error small
+where the machine rests: mean squares of stretches scatter as those of a stationary series do
+(Bartlett, 1946). Slow noise goes on where the model rests, a slow model error stands still there.
+And runs with equal inputs differ by noise, and by all that the machine does not repeat: a noise
+floor that needs no model.
 
-What a model lacks is small where the machine rests and large where it turns, noise of a sensor is
-of one size. Mean squares of stretches of a stationary series are like those of some independent
-normal numbers, as many as its autocorrelation says (Bartlett, 1946).
-
-Whether slow noise of a signal is there where the machine rests.
-
-Noise of a sensor does not know what the machine does: where the model rests, the signal shows it
-alone. What a model lacks is slow, too, but stands still there.
-
-How well a machine repeats itself: what differs between runs with equal inputs.
-
-No model that answers to its inputs alone can tell such runs apart, so that their difference is a
-floor that needs no model: noise, and all that the machine does not do alike twice.
-
-Innovations: what is left of residuals that are correlated in time once each is predicted from
-those before it.
-
-Where a model leaves more than noise, its residuals are coloured, and least squares credits an
-effect with whatever slow drift it can follow. In the innovations of what is left every frequency
-counts by how well it is known: generalized least squares (Aitken, 1935), with the colour of an
-autoregression (Yule, 1927; Walker, 1931), its order by Akaike's criterion (1974).
+Where the residual exceeds the noise, it is autocorrelated, and least squares credits an effect with
+whatever slow drift it can follow. In the innovations every frequency counts by how well it is
+known: generalized least squares (Aitken, 1935), with the correlation of an autoregression (Yule,
+1927; Walker, 1931), its order by Akaike's criterion (1974).
 """
 
 import itertools
@@ -104,9 +91,9 @@ def _spread(freedom: float, count: int) -> tuple[float, float]:
 
 
 def _poles() -> tuple[float, ...]:
-    """Zero, and from the smallest correlation that a SEGMENT tells from none to a time constant of
-    half a SEGMENT, in steps of at most half the error that a SEGMENT leaves: 1 / sqrt(SEGMENT) in
-    the inverse hyperbolic tangent of a correlation, wherever it is (Fisher, 1915).
+    """Zero, and from the smallest correlation that is significant in a SEGMENT to a time constant
+    of half a SEGMENT, in steps of at most half the error that a SEGMENT leaves: 1 / sqrt(SEGMENT)
+    in the inverse hyperbolic tangent of a correlation, wherever it is (Fisher, 1915).
     """
     error = 1.0 / np.sqrt(SEGMENT)
     first, last = DEVIATIONS * error, np.arctanh(1.0 - 2.0 / SEGMENT)
@@ -199,7 +186,7 @@ def coloured_noise(series: Sequence[FloatArray], least: float) -> Noise:
 
 def most_in_quietest(runs: Sequence[Sequence[FloatArray]]) -> float:
     """The largest standard deviation, at 99 %, that noise of any colour may have which all of
-    `runs`, each in residual series [n], have in common: none of them can leave less.
+    `runs`, each in residual series [n], have in common: the residual of none can be smaller.
 
     Mean squares of an autoregression with pole a vary as those of n (1 - a^2) / (1 + a^2) normal
     numbers that are independent (Bartlett, 1946); a is the largest that is tried.

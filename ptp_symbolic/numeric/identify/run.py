@@ -1,12 +1,8 @@
-"""A run prepared for fitting: inputs as tables, measured signals with weights, unknown starts.
+"""A run prepared for fitting: inputs as tables, measured signals with weights, unknown initial
+states.
 
-Rates that are measured without the angle: possible where nothing depends on the angle.
-
-The rate of a joint at the first sample of a run or window, from the angles around it.
-
-A run with other inputs: noisy, silent, averaged.
-
-Runs and windows together: which are of one log, and how long each is.
+The rate of a joint at the first sample of a run or window is estimated from the angles around it.
+Runs have variants with other inputs or fewer samples, and inputs averages over parts of samples.
 """
 
 import itertools
@@ -17,21 +13,31 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import stats
 
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.data.latency import held_averages
 from ptp_symbolic.numeric.identify.constants import (
     ANYWHERE,
     DEVIATIONS,
     FAR,
     LEAST_START,
+    LITTLE,
     ROUNDING,
     START_SPAN,
 )
-from ptp_symbolic.numeric.identify.work import Work
+from ptp_symbolic.numeric.identify.evidence import Work
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import InputTable, stack, table
+from ptp_symbolic.numeric.simulation.signals.inputs import (
+    InputSignal,
+    InputTable,
+    held_values,
+    stack,
+    table,
+)
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 
 
 def has_angle(signals: Collection[str], rate: str) -> bool:
@@ -77,9 +83,9 @@ def first_rate(around: Around, column: int, sigma: float, count: float) -> tuple
     is `sigma`, rounding of a `count` (nan: none) included.
 
     A local parabola gives it, over the longest span up to a tenth of a second that agrees with all
-    shorter ones: where friction lets go, a longer one bends the wrong way (intersection of
+    shorter ones: where friction breaks away, a longer one bends the wrong way (intersection of
     confidence intervals: Goldenshluger and Nemirovski, 1997). Its error is that of the noise, and
-    what a cubic tells otherwise.
+    the difference to a cubic.
     """
     time = around.time - around.time[around.first]
     low, high, found = -np.inf, np.inf, (0.0, np.inf)
@@ -353,3 +359,70 @@ def by_log(runs: Sequence[Run], parts: Sequence[FloatArray]) -> list[FloatArray]
 def sizes(runs: Sequence[Run]) -> FloatArray:
     """Number of samples of every run [runs]."""
     return np.array([len(run.time) for run in runs], dtype=np.float64)
+
+
+def cell_averages(run: Run, column: int, delay: float, grid: IntArray) -> FloatArray:
+    """A zero-order-hold input [g], delayed by `delay` s, averaged over the cell around every sample
+    of a `grid` [g].
+    """
+    time = run.time[grid]
+    middle = 0.5 * (time[1:] + time[:-1])
+    edges = np.concatenate(
+        [[1.5 * time[0] - 0.5 * time[1]], middle, [1.5 * time[-1] - 0.5 * time[-2]]]
+    )
+    return held_averages(run.time, run.held_inputs[:, column], edges - delay)
+
+
+def part_averages(run: Run, column: int, delay: float, parts: int) -> FloatArray:
+    """A zero-order-hold input, delayed by `delay` s, averaged over equal parts of every sample
+    [k - 1, parts].
+    """
+    shares = np.arange(parts) / parts
+    edges = run.time[:-1, None] + np.diff(run.time)[:, None] * shares
+    flat = np.append(edges.ravel(), run.time[-1])
+    return held_averages(run.time, run.held_inputs[:, column], flat - delay).reshape(-1, parts)
+
+
+def usual_period(runs: Sequence[Run]) -> float:
+    """Sampling period in s of most samples of some runs."""
+    return float(np.median(np.concatenate([np.diff(run.time) for run in runs])))
+
+
+def samples_within(run: Run, period: float) -> int:
+    """How many samples of `run` come within `period` s, at least one."""
+    return max(1, int(period / usual_period((run,)) + 1e-6))
+
+
+def thinned(run: Run, every: int) -> Run:
+    """`run` with the first of `every` so many samples, the inputs averaged in between. Inputs jump
+    where they did: a step that comes half a sample late moves an angle by counts.
+    """
+    if every < 2:
+        return run
+    kept = np.arange(0, len(run.time), every)
+    time = np.ascontiguousarray(run.time[kept])
+    return replace(
+        run,
+        time=time,
+        measured=np.ascontiguousarray(run.measured[kept]),
+        held_inputs=np.ascontiguousarray(run.held_inputs[kept]),
+        inputs=stack([_averaged(*signal, time) for signal in held_values(run.inputs)]),
+    )
+
+
+def _averaged(times: FloatArray, values: FloatArray, edges: FloatArray) -> InputSignal:
+    """A zero-order hold averaged between `edges` in s and the jumps that stand out: beyond noise
+    and slope, and a material share of its range.
+    """
+    rise = np.abs(np.diff(values))
+    usual = float(np.median(rise) / stats.norm.ppf(0.75)) if rise.size else 0.0
+    jumps = times[1:][rise > max(FAR * usual, LITTLE * float(np.ptp(values)))]
+    at = np.union1d(edges, jumps[(jumps > edges[0]) & (jumps < edges[-1])])
+    last = values[max(0, int(np.searchsorted(times, edges[-1], side="right")) - 1)]
+    return table(at, np.append(held_averages(times, values, at), last))
+
+
+def grid_averages(values: FloatArray, grid: IntArray) -> FloatArray:
+    """Averages [g, v] of `values` [k, v] over the samples nearest to every one of the grid."""
+    edges = np.concatenate([[0], (grid[1:] + grid[:-1] + 1) // 2, [len(values)]])
+    return np.add.reduceat(values, edges[:-1], axis=0) / np.diff(edges)[:, None]

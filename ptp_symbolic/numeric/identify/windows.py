@@ -2,9 +2,8 @@
 
 A machine that forgets (a geared drive, damped by its back-EMF) is judged over whole runs. One that
 integrates its input noise, or whose errors grow (a torque-driven axis, a payload above the tilt
-axis), would be judged by that noise; it is cut into windows with starts of their own.
-
-Windows of a log that follow one another: each begins where the simulated one before it ended.
+axis), would be judged by that noise; it is cut into windows with initial states of their own. The
+same replays give the propagated input noise of a fit.
 """
 
 import itertools
@@ -15,6 +14,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ptp_symbolic.numeric.identify.blocks import huber_root, weighted_median
 from ptp_symbolic.numeric.identify.constants import (
     ALLOWED_RISE,
     BINS,
@@ -22,21 +22,166 @@ from ptp_symbolic.numeric.identify.constants import (
     LENGTHS,
     MATERIAL,
     NOTHING,
+    REPEATS,
+    REPLAYS,
     ROUNDING,
     SEED,
     SHORT,
     START_SPAN,
     TUNING,
 )
-from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate, start_state
-from ptp_symbolic.numeric.identify.evidence import recorded
-from ptp_symbolic.numeric.identify.replays import input_noise, propagated_noise, replayed
-from ptp_symbolic.numeric.identify.run import WINDOW, Around, Run, with_start
-from ptp_symbolic.numeric.identify.sample_averages import thinned
+from ptp_symbolic.numeric.identify.evaluate import (
+    Tolerance,
+    evaluate,
+    start_state,
+)
+from ptp_symbolic.numeric.identify.evidence import derived, is_recording, recorded
+from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.intervals import project_out, with_finite_differences
+from ptp_symbolic.numeric.identify.least_squares import (
+    DEFAULT_TOLERANCE,
+)
+from ptp_symbolic.numeric.identify.noise import white_noise
+from ptp_symbolic.numeric.identify.run import WINDOW, Around, Run, thinned, with_inputs, with_start
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.inputs import part_of_held
 
+BoolArray = NDArray[np.bool_]
 FloatArray = NDArray[np.float64]
+
+
+def input_noise(run: Run, declared: Sequence[float | None]) -> FloatArray:
+    """Noise (rms) of every input [nu] in its unit: as declared, else as its samples show it."""
+    columns = zip(run.held_inputs.T, declared, strict=True)
+    return np.array([white_noise(c, run.time) if d is None else d for c, d in columns])
+
+
+def noisier(run: Run, noise: FloatArray, rng: np.random.Generator) -> Run:
+    """`run` with more `noise` (rms) [nu] on its inputs."""
+    return with_inputs(run, run.held_inputs + noise * rng.standard_normal(run.held_inputs.shape))
+
+
+def replayed(
+    model: Model,
+    run: Run,
+    p: FloatArray,
+    z: FloatArray,
+    noise: FloatArray,
+    rng: np.random.Generator,
+    times: int = 1,
+    tolerance: Tolerance = DEFAULT_TOLERANCE,
+) -> tuple[FloatArray, FloatArray]:
+    """Changes [k * ny, times] of the weighted residuals by input noise, each from another draw, and
+    the Jacobian by the start of the run; nan where it cannot be simulated. Inputs are held from
+    sample to sample, whatever the log has in between.
+    """
+    none = np.zeros(0, dtype=np.int64)
+    plain = evaluate(model, with_inputs(run, run.held_inputs), p, z, none, True, tolerance)
+    changes = np.full((run.size, times), np.nan)
+    for column in changes.T:
+        other = evaluate(model, noisier(run, noise, rng), p, z, none, False, tolerance)
+        if not (plain.failed or other.failed):
+            column[:] = other.residual - plain.residual
+    return changes, plain.by_start
+
+
+def replayed_squares(
+    model: Model,
+    runs: Sequence[Run],
+    z: Sequence[FloatArray],
+    p: FloatArray,
+    declared_noise: Sequence[float | None],
+    executor: Executor | None = None,
+) -> FloatArray:
+    """The propagated input noise in the residual of a perfect model: mean squares [REPEATS, runs,
+    ny] of the replays of every run, in units of the noise of every signal (see `Run.weight`); nan
+    where a run cannot be simulated. What its unknown start can take up is projected out.
+    """
+
+    def squares(number: int) -> FloatArray:
+        run, rng = runs[number], np.random.default_rng((SEED, number))
+        noise = input_noise(run, declared_noise)
+        if not np.any(noise):
+            return np.zeros((REPEATS, len(run.signals)))
+        changes, by_start = replayed(model, run, p, z[number], noise, rng, REPEATS)
+        left = project_out(changes, by_start).reshape(*run.measured.shape, REPEATS)
+        return np.asarray(np.mean(left**2, axis=0).T)
+
+    every = (executor.map if executor else map)(squares, range(len(runs)))
+    return np.stack(list(every), axis=1)
+
+
+def propagated_noise(
+    model: Model,
+    runs: Sequence[Run],
+    z: Sequence[FloatArray],
+    p: FloatArray,
+    declared_noise: Sequence[float | None],
+    executor: Executor | None = None,
+) -> FloatArray:
+    """Root mean square [runs, ny] of the propagated input noise, over all replays of
+    `replayed_squares` but the largest one, which may stick elsewhere.
+    """
+    squares = np.sort(replayed_squares(model, runs, z, p, declared_noise, executor), axis=0)
+    return np.asarray(np.sqrt(np.mean(squares[:-1], axis=0)))
+
+
+def estimable(
+    fit: Fit, declared_noise: Sequence[float | None], executor: Executor | None = None
+) -> Fit:
+    """A finished fit with all that its intervals need: what the noise of the inputs changes, and
+    finite differences where derivatives miss what these see.
+    """
+    return with_finite_differences(with_input_noise(fit, declared_noise, executor), executor)
+
+
+def with_input_noise(
+    fit: Fit, declared_noise: Sequence[float | None], executor: Executor | None = None
+) -> Fit:
+    """`fit` with the propagated noise of its inputs, as declared or as their samples show it, in
+    its residuals: intervals allow for it. A fit follows a part of that noise, and the fewer runs
+    there are, the more: the residual is no measure of it then.
+
+    As many replays as make REPLAYS of all runs or windows together. Those that change far more than
+    usual, as where the machine sticks elsewhere, weigh less, as they do in the fit.
+    """
+    if not fit.free or fit.failed:
+        return fit
+
+    def changed() -> Sequence[FloatArray]:
+        return _by_input_noise(fit, declared_noise, executor)
+
+    by_input_noise: Sequence[FloatArray]
+    if is_recording():
+        by_input_noise = derived("input noise", (fit, declared_noise), changed)
+    else:
+        by_input_noise = changed()
+    return replace(fit, by_input_noise=by_input_noise) if len(by_input_noise) else fit
+
+
+def _by_input_noise(
+    fit: Fit, declared_noise: Sequence[float | None], executor: Executor | None
+) -> Sequence[FloatArray]:
+    """The `by_input_noise` of `with_input_noise`."""
+    p = fit.model.parameter_vector(dict(fit.values))
+    replays = -(-REPLAYS // len(fit.runs))
+
+    def changes(number: int) -> FloatArray:
+        run, rng = fit.runs[number], np.random.default_rng((SEED, number))
+        noise = input_noise(run, declared_noise)
+        if not np.any(noise):
+            return np.zeros((run.size, 0))
+        every, _ = replayed(fit.model, run, p, fit.z[number], noise, rng, replays, fit.tolerance)
+        simulated = every[:, np.all(np.isfinite(every), axis=0)]
+        return project_out(simulated, fit.evaluations[number].by_start)
+
+    every = list((executor.map if executor else map)(changes, range(len(fit.runs))))
+    square = np.concatenate([np.mean(c**2, axis=0) for c in every])
+    if not square.size:
+        return ()
+    size = np.concatenate([np.full(c.shape[1], float(len(c))) for c in every])
+    usual = max(float(weighted_median(square[:, None], size)[0]), 1.0)
+    return tuple(c * huber_root(np.mean(c**2, axis=0), usual) for c in every)
 
 
 @recorded()
@@ -110,9 +255,9 @@ def cut_where_errors_grow(
     declared_noise: Sequence[float | None],
     executor: Executor | None = None,
 ) -> tuple[Run, ...]:
-    """The runs, those cut into windows in which the noise of the inputs leaves more than the noise
-    of the signals and may be most of the residual `left` [runs, ny], or in which a gear rattles:
-    breakaways and bounces amplify any error until nothing can be predicted.
+    """The runs, those cut into windows in which the propagated noise of the inputs exceeds the
+    noise of the signals and may be most of the residual `left` [runs, ny], or in which a gear
+    rattles: breakaways and bounces amplify any error until nothing can be predicted.
     """
     grows = _errors_grow(model, tuple(runs), tuple(z), left, p, declared_noise, executor)
     found: list[Run] = []
@@ -140,8 +285,8 @@ def _errors_grow(
 
 def _rattles(model: Model, run: Run, p: FloatArray) -> bool:
     """True when a small error of the place of a gear in its gap moves the joint ten (1 / MATERIAL)
-    times as far within the run, by the geometric mean over the places in the gap: from a single
-    one it scatters tenfold, for some by chance lead to a rest on a face.
+    times as far within the run, by the geometric mean over the places in the gap: from a single one
+    it scatters tenfold, for some end by chance at a rest on a face.
     """
     none, z = np.zeros(0, dtype=np.int64), run.guess
     for index, unknown in enumerate(run.unknowns):

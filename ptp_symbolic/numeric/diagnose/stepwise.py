@@ -1,17 +1,17 @@
-"""The moves of a search: sets are completed, pruned, grown, exchanged by refits.
+"""The moves of a stepwise search: sets are completed, pruned, grown, exchanged and simplified by
+refits; what they have found, and what was tried.
 
-What a search has tried: a hundred trials, whose Jacobians are large, and where sets end.
-
-Every candidate by itself over a few short windows: what the motion alone does not show.
-
-Windows forget: neither a rest nor a bounce in a gap that ends a sample late leads a fit astray
-there, so that a few iterations tell how much a candidate is worth, and at which values.
-
-Every candidate of a set in the simplest of its forms that will do.
+Candidates are compared over a few short windows first. Windows forget: neither a rest nor a bounce
+in a gap that ends a sample late misleads a fit there, so that a few iterations show the worth of a
+candidate, and at which values.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from weakref import WeakSet
+
+import numpy as np
 
 from ptp_symbolic.numeric.diagnose.candidates import (
     Candidate,
@@ -19,23 +19,24 @@ from ptp_symbolic.numeric.diagnose.candidates import (
     with_what_it_brings,
     without_member,
 )
-from ptp_symbolic.numeric.diagnose.declared_fit import beside_declared
-from ptp_symbolic.numeric.diagnose.findings import Step, Tried, is_earned, looked_at, step_of
-from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain, p_value
-from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise
-from ptp_symbolic.numeric.diagnose.proposals import Proposals, start_for
+from ptp_symbolic.numeric.diagnose.noise_floor import Carried, carried_noise, leaves_white_noise
+from ptp_symbolic.numeric.diagnose.proposals import ProposedSets, start_for
 from ptp_symbolic.numeric.diagnose.refits import (
+    along,
+    beside_declared,
     expected_gain,
     forms,
+    from_rows,
     fullest,
+    in_place,
     polished,
     sharpened,
+    taken_over,
     to_its_end,
 )
+from ptp_symbolic.numeric.diagnose.regression import exchanges
 from ptp_symbolic.numeric.diagnose.responses import responses
-from ptp_symbolic.numeric.diagnose.starts import along, from_rows, in_place, taken_over
-from ptp_symbolic.numeric.diagnose.subsets import exchanges
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
@@ -43,29 +44,148 @@ from ptp_symbolic.numeric.diagnose.trial import (
     fitted,
     forms_of,
     halving,
-    is_alike,
     is_near,
+    is_same_end,
     ranked,
 )
 from ptp_symbolic.numeric.identify.constants import (
+    FALSE_ALARM,
     ITERATIONS,
     LITTLE,
     MOST,
     SCREENED,
     TRIED,
 )
+from ptp_symbolic.numeric.identify.evaluate import Evaluation
+from ptp_symbolic.numeric.identify.evidence import Deferred
+
+
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """Trials that are not chosen, `others`; those fitted to their end; and by the forms of its
+    candidates (see `forms_of`) the end of every set that was restarted from the rows.
+    """
+
+    others: list[Trial] = field(default_factory=list)
+    at_end: WeakSet[Trial] = field(default_factory=WeakSet)
+    anew: dict[tuple[tuple[str, int], ...], Trial] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """A candidate of a set, what it gains, how likely it is found where it is not (see `p_value`),
+    and the trial without it.
+    """
+
+    candidate: Candidate
+    gain: Gain
+    p_value: float
+    without: Trial
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What the search found: the declared model, the chosen set (the same where nothing is added),
+    what every member of it gains, all that was tried, and the noise of the inputs as the best model
+    so far propagates it to the outputs. `task` has the candidates with a frequency where a line was
+    found, and without those that have none. The search `is_cut_short` where its time was over at
+    its end: some moves may not have been tried. The declared model `is_over_windows` where it was
+    fitted over windows too, and `is_taken_over` where it was found from the end of a set, not from
+    its own starts.
+    """
+
+    task: Task
+    declared: Trial
+    chosen: Trial
+    members: tuple[Step, ...]
+    tried: Tried
+    proposals: ProposedSets
+    carried: Carried
+    is_cut_short: bool
+    is_over_windows: bool = True
+    is_taken_over: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Refusals:
+    """Why candidates that gained are not named, by key, and the keys of those whose torque goes
+    with the speed in another way than their law.
+    """
+
+    why: dict[str, str] = field(default_factory=dict)
+    contradicting: set[str] = field(default_factory=set)
+
+    def note(self, key: str, why: str, breaks_law: bool = False) -> None:
+        """Note the last reason: in another set a candidate may be refused for another one."""
+        self.why[key] = why
+        if breaks_law:
+            self.contradicting.add(key)
+        else:
+            self.contradicting.discard(key)
+
+
+def step_of(trial: Trial, candidate: Candidate, without: Trial) -> Step:
+    """What `candidate` gains in `trial` over the trial `without` it."""
+    return Step(candidate, gain(trial, without), p_value(trial, candidate.vanishing), without)
+
+
+def looked_at(candidates: Sequence[Candidate], added: Sequence[Candidate]) -> int:
+    """How many tests were made before some were `added`: one for every candidate, and one for every
+    frequency that those were scanned over.
+    """
+    return len(candidates) * math.prod(c.frequencies_compared for c in added)
+
+
+def is_earned(earned: Gain, p: float, tests: int, material: float) -> bool:
+    """Whether a gain is at least the share `material`, and significant over so many `tests` by the
+    values of its parameters (see `p_value`), or by how much better it predicts blocks, or by how
+    many (Bonferroni): parameters that trade for each other may each be anything while their effect
+    is beyond doubt.
+    """
+    chance = 3.0 * min(p, earned.chance, earned.by_rank)
+    return earned.share >= material and earned.lower > 0.0 and chance < FALSE_ALARM / max(tests, 1)
+
+
+def best_of_each_set(trials: Sequence[Trial], best: Trial) -> list[Trial]:
+    """The best trial of every set. Of those that are far behind `best` (see `is_near`) only tables
+    still show their gain: single precision is enough for their Jacobians.
+    """
+    return [t if is_near(t, [best]) else _lighter(t) for t in ranked(trials)]
+
+
+def _lighter(trial: Trial) -> Trial:
+    whole = trial.fit.evaluations
+    if isinstance(whole, Deferred):
+        if whole.is_single:
+            return trial
+        return replace(trial, fit=replace(trial.fit, evaluations=whole.as_single(_in_single)))
+    if all(e.by_parameter.dtype == np.float32 for e in whole):
+        return trial
+    return replace(trial, fit=replace(trial.fit, evaluations=_in_single(whole)))
+
+
+def _in_single(evaluations: Sequence[Evaluation]) -> tuple[Evaluation, ...]:
+    """Evaluations with Jacobians in single precision."""
+    return tuple(
+        replace(
+            e,
+            by_parameter=e.by_parameter.astype(np.float32),
+            by_start=e.by_start.astype(np.float32),
+        )
+        for e in evaluations
+    )
 
 
 def screened(
     task: Task,
-    found: Proposals,
+    found: ProposedSets,
     kept: Sequence[Candidate],
     wanted: Sequence[Candidate],
     values: Mapping[str, float],
 ) -> list[Trial]:
     """The set `kept` with those of the candidates `wanted`, and with what they bring along, that
     fit a few windows of the task best, the best first. A candidate is tried in its simplest and in
-    its fullest form. A fit begins where the rows start the set, or at `values` and the candidate's
+    its fullest form. A fit starts where the rows start the set, or at `values` and the candidate's
     own start, whichever is better, and the windows where they begin without it; after every
     iteration half of the fits go on.
     """
@@ -95,7 +215,7 @@ def screened(
 
 
 @dataclass(eq=False)
-class Seeker:
+class StepwiseSearch:
     """A search, with what was `tried`; `carried` is that of the trial that was `followed` last.
 
     Once the task `is_over`, its moves begin nothing new: they return what they were given, or
@@ -104,49 +224,55 @@ class Seeker:
 
     task: Task
     declared: Trial
-    proposals: Proposals
+    proposals: ProposedSets
     carried: Carried
     tried: Tried = field(default_factory=Tried)
     followed: Trial | None = None
 
-    def among(self, candidates: tuple[Candidate, ...]) -> "Seeker":
+    def among(self, candidates: tuple[Candidate, ...]) -> "StepwiseSearch":
         """The search among other candidates, which knows what was tried so far. One that needs
         another that is not among them has nothing to act on.
         """
         task = replace(self.task, candidates=with_all_they_need(candidates))
-        return Seeker(task, self.declared, self.proposals, self.carried, self.tried)
+        return StepwiseSearch(task, self.declared, self.proposals, self.carried, self.tried)
 
-    def unseen(self, trial: Trial) -> list[Trial]:
-        """The trial with each candidate that the rows cannot show, begun at its response in the
-        outputs and part of the way there.
+    def without_influence(self, trial: Trial) -> list[Trial]:
+        """The trial with each candidate without influence on the rows, started at its response in
+        the outputs and part of the way there.
         """
-        found = [] if self.task.is_over else responses(self.task, trial, self.proposals.unseen)
+        found = (
+            []
+            if self.task.is_over
+            else responses(self.task, trial, self.proposals.without_influence)
+        )
         return [t for r in found[:TRIED] for t in along(self.task, self.proposals, r, trial)]
 
     def follow(self, trial: Trial) -> None:
-        """Let a trial tell what the noise of the inputs leaves: a model that rests shows none."""
+        """Propagate the noise of the inputs through a trial from now on: a model that rests shows
+        none.
+        """
         if trial.candidates and trial is not self.followed:
             self.followed, self.carried = trial, carried_noise(self.task, trial.fit)
 
-    def excusing(self, trial: Trial) -> Carried:
-        """What the noise of the inputs leaves, which excuses what a trial leaves, and what others
-        leave in its place as well. Noise that is declared is carried by the trial itself, which may
-        carry more than others; what differences of the samples tell may be no noise.
+    def input_noise_for(self, trial: Trial) -> Carried:
+        """The propagated noise of the inputs with which the residual of a trial, and of its
+        alternatives, is compared. Declared noise is propagated by the trial itself, which may
+        amplify it more than others; what differences of the samples show may be no noise.
         """
         noise = self.task.input_noise
         if None in noise or not any(noise) or trial is self.followed:
             return self.carried
         return carried_noise(self.task, trial.fit)
 
-    def is_at_noise(self, trial: Trial) -> bool:
-        """Whether a trial leaves white noise alone."""
+    def is_white(self, trial: Trial) -> bool:
+        """Whether the residual of a trial is white noise alone."""
         return leaves_white_noise(trial, self.carried)
 
     def have_answer(self, *trials: Trial) -> bool:
-        """Whether any of them leaves white noise alone, with one candidate at most: no other set
-        fits better, and those as small are compared with it later, in its place.
+        """Whether the residual of any of them is white noise alone, with one candidate at most: no
+        other set fits better, and its alternatives are compared with it later.
         """
-        return any(len(t.candidates) < 2 and self.is_at_noise(t) for t in trials)
+        return any(len(t.candidates) < 2 and self.is_white(t) for t in trials)
 
     def polished(self, trial: Trial) -> Trial:
         """The trial fitted to its end; one that was is not fitted again."""
@@ -156,23 +282,23 @@ class Seeker:
         return trial
 
     def sharpened(self, trial: Trial) -> Trial:
-        """A polished trial fitted with sharp simulations, where only noise is left."""
+        """A polished trial fitted with sharp simulations, where the residual is white."""
         return sharpened(self.task, trial, self.carried)
 
     def restarted(self, trial: Trial) -> Trial:
         """A polished trial, or a better end from where the rows start its set, and from there over
-        short windows: friction makes the misfit of whole runs a staircase. A set that was begun so
-        is not again, unless it begins with values that the rows do not show.
+        short windows: friction makes the deviance of whole runs a staircase. A set that was
+        restarted so is not again, unless it starts with values without influence on the rows.
         """
-        if not trial.candidates or self.task.is_over or self.is_at_noise(trial):
+        if not trial.candidates or self.task.is_over or self.is_white(trial):
             return trial
         known = self.tried.anew.get(forms_of(trial.candidates))
-        unseen = {c.key for c in self.proposals.unseen}
-        if known is not None and (known is trial or unseen.isdisjoint(trial.keys)):
+        without_influence = {c.key for c in self.proposals.without_influence}
+        if known is not None and (known is trial or without_influence.isdisjoint(trial.keys)):
             return ranked([trial, known])[0]
         begun = from_rows(self.task, self.proposals, trial.candidates, trial.values)
         left = halving(self.task, begun, 1)
-        fresh = [t for t in left if is_near(t, [trial]) and not is_alike(t, trial)]
+        fresh = [t for t in left if is_near(t, [trial]) and not is_same_end(t, trial)]
         best = ranked([trial, *(self.polished(t) for t in fresh)])[0]
         self.tried.anew[forms_of(best.candidates)] = best
         return best
@@ -187,11 +313,11 @@ class Seeker:
         return self.polished(trial)
 
     def without(self, trial: Trial, candidate: Candidate, *, briefly: bool = False) -> Trial:
-        """The trial refitted without one of its candidates, and without what needs it; or what is
-        left where the search has come to before, if that is a better place: a candidate gains no
-        more than what it adds to the best fit without it. One that gains next to nothing after a
-        few iterations gains no more at their end, and one that gains nearly all still does: these
-        fits are not brought there. `briefly` it is not begun anew either.
+        """The trial refitted without one of its candidates, and without what needs it; or an
+        earlier fit of that set, if it is better: a candidate gains no more than what it adds to the
+        best fit without it. One that gains next to nothing after a few iterations gains no more at
+        their end, and one that gains nearly all still does: these fits are not brought there.
+        `briefly` it is not restarted either.
         """
         kept = without_member(trial.candidates, candidate)
         if not kept:
@@ -203,7 +329,7 @@ class Seeker:
             smaller = smaller if briefly else self.restarted(smaller)
         same = [t for t in self.tried.others if forms_of(t.candidates) == forms_of(kept)]
         known = ranked([smaller, *same])[0]
-        if not is_alike(known, smaller):
+        if not is_same_end(known, smaller):
             smaller = self.polished(known)
         if ranked([smaller, self.declared])[0] is self.declared:
             smaller = beside_declared(self.task, smaller, self.declared, self.carried)
@@ -211,8 +337,9 @@ class Seeker:
         return smaller
 
     def is_decided_at_end_of(self, smaller: Trial, trial: Trial) -> bool:
-        """Whether the trial gains over a `smaller` set materially as yet, but not most of what that
-        leaves, or most of the little that it leaves unexplained: a fit short of its end may.
+        """Whether the gain of the trial over a `smaller` set is material so far, but below one
+        half, or the smaller set explains most already: a fit that is not at its end may change
+        that.
         """
         share, least = gain(trial, smaller).share, self.task.material
         return share >= least and (share < MOST or gain(smaller, self.declared).share >= MOST)
@@ -226,29 +353,32 @@ class Seeker:
         return self.is_earned(step.gain, step.p_value, [step.candidate])
 
     def is_kept(self, trial: Trial, step: Step) -> bool:
-        """Whether a candidate stays in the set while the search goes on. Where more than noise is
-        left, which hides whether a gain is clear, a material one is enough; a name asks for both.
+        """Whether a candidate stays in the set while the search goes on. Where the residual exceeds
+        the noise, which hides whether a gain is significant, a material one is enough; a name
+        requires both.
         """
-        if self.is_at_noise(trial):
+        if self.is_white(trial):
             return self.is_needed(step)
         return step.gain.share >= self.task.material
 
     def is_earned(self, earned: Gain, p: float, added: Sequence[Candidate]) -> bool:
-        """Whether what is `added` gains materially, and clearly over all that was looked at."""
+        """Whether the gain of what is `added` is material, and significant over all that was
+        compared.
+        """
         return is_earned(earned, p, looked_at(self.task.candidates, added), self.task.material)
 
     def pruned(self, trial: Trial) -> tuple[Trial, list[Step]]:
-        """Take out candidates until all that is left is needed, with its gains: of those that are
-        not needed the one without which the rest fits best, for two that act alike can each be
-        done without while the other is there. Those are refitted first that seem to gain little;
-        without those that seem to gain most, no set is begun anew. A set that gains little over
-        the declared model holds no candidate that gains more.
+        """Drop candidates until every remaining one is needed, with its gains: of those that are
+        not needed the one without which the rest fits best, for of two aliased ones each can be
+        dropped while the other is there. Those are refitted first that seem to gain little; without
+        those that seem to gain most, no set is restarted. A set that gains little over the declared
+        model holds no candidate that gains more.
         """
         while trial.candidates:
             if gain(trial, self.declared).share < self.task.material:
                 return self.declared, []
             steps: list[Step] = []
-            briefly = not self.is_at_noise(trial)
+            briefly = not self.is_white(trial)
             every = trial.candidates
             little = [c for c in every if expected_gain(trial, c.vanishing) < MOST]
             most = [c for c in every if c not in little]
@@ -265,17 +395,17 @@ class Seeker:
         return trial, []
 
     def grown(self, trial: Trial, *, briefly: bool = False) -> Trial | None:
-        """The trial with one more candidate that gains clearly and materially; None if none does.
-        `briefly` one is looked for that takes away most of what is left, by its response alone.
+        """The trial with one more candidate of a material and significant gain; None if there is
+        none. `briefly`, with one that more than halves the sum of squares, by its response alone.
 
-        Where only noise is left, those are tried that the motion alone cannot show. One that
+        Where the residual is white, those are tried that have no influence on the rows. One that
         promises far more than all others is tried before them.
         """
         if self.task.is_over:
             return None
         task = self.task
         least = MOST if briefly else LITTLE
-        wanted = self.proposals.unseen if self.is_at_noise(trial) else task.candidates
+        wanted = self.proposals.without_influence if self.is_white(trial) else task.candidates
         found = [r for r in responses(task, trial, wanted) if r.left < 1.0 - task.material]
         if not found:
             return None
@@ -292,14 +422,15 @@ class Seeker:
         return self.best_earning(begun, trial, least)
 
     def simplest(self, trials: Sequence[Trial]) -> Trial:
-        """The best of trials; of those that leave white noise alone that of fewest parameters."""
-        quiet = [t for t in trials if self.is_at_noise(t)]
+        """The best of trials; of those with a white residual that of fewest parameters."""
+        quiet = [t for t in trials if self.is_white(t)]
         return min(quiet, key=lambda t: len(t.fit.free)) if quiet else ranked(trials)[0]
 
     def best_earning(self, begun: Sequence[Trial], trial: Trial, least: float) -> Trial | None:
-        """The best of trials `begun`, polished, in which what they have more than `trial` gains
-        clearly and materially, and the share `least`; None if there is none. A simpler form may be
-        clear where one that fits better, with parameters that trade for each other, is not.
+        """The best of trials `begun`, polished, in which what they have more than `trial` has a
+        material and significant gain, of the share `least`; None if there is none. A simpler form
+        may be significant where one that fits better, with parameters that trade for each other, is
+        not.
         """
         left = halving(self.task, begun, SCREENED, seen=self.tried.others)
         found = ranked([to_its_end(self.task, t, self.carried) for t in left if is_near(t, left)])
@@ -333,15 +464,15 @@ class Seeker:
         return best if best is not trial else None
 
 
-def simplified(seeker: Seeker, trial: Trial) -> Trial:
-    """Every candidate in the simplest of its forms that loses nothing clear and material. A
-    form is not fitted where linear prediction loses most, and not to its end where that
-    foresees a material loss and most is lost after some iterations.
+def simplified(stepwise: StepwiseSearch, trial: Trial) -> Trial:
+    """Every candidate in the simplest of its forms that loses nothing material and significant. A
+    form is not fitted where linear prediction loses most, and not to its end where that foresees a
+    material loss and most is lost after some iterations.
     """
     for key in trial.keys:
         candidate = next(c for c in trial.candidates if c.key == key)
         simpler = sorted(
-            (c for c in forms(seeker.task, candidate) if len(c.free) < len(candidate.free)),
+            (c for c in forms(stepwise.task, candidate) if len(c.free) < len(candidate.free)),
             key=lambda c: len(c.free),
         )
         for form in simpler:
@@ -350,20 +481,22 @@ def simplified(seeker: Seeker, trial: Trial) -> Trial:
             foreseen = expected_gain(trial, lost)
             if foreseen > MOST:
                 continue
-            smaller = begun_in_form(seeker, trial, candidate, form)
-            if foreseen >= seeker.task.material and gain(trial, smaller).share >= MOST:
+            smaller = begun_in_form(stepwise, trial, candidate, form)
+            if foreseen >= stepwise.task.material and gain(trial, smaller).share >= MOST:
                 continue
-            smaller = seeker.polished(smaller)
-            if not seeker.is_earned(gain(trial, smaller), p_value(trial, lost), ()):
+            smaller = stepwise.polished(smaller)
+            if not stepwise.is_earned(gain(trial, smaller), p_value(trial, lost), ()):
                 trial = smaller
                 break
     return trial
 
 
-def begun_in_form(seeker: Seeker, trial: Trial, candidate: Candidate, form: Candidate) -> Trial:
+def begun_in_form(
+    stepwise: StepwiseSearch, trial: Trial, candidate: Candidate, form: Candidate
+) -> Trial:
     """The trial refitted, by some iterations, with a candidate in another form."""
     dropped = set(candidate.parameters) - set(form.parameters)
-    values = trial.values | {name: seeker.task.fixed[name] for name in dropped}
+    values = trial.values | {name: stepwise.task.fixed[name] for name in dropped}
     candidates = tuple(form if c is candidate else c for c in trial.candidates)
-    task, run = seeker.task, seeker.task.executor
+    task, run = stepwise.task, stepwise.task.executor
     return fitted(task, candidates, values, trial.fit.z, ITERATIONS, trial.fit, executor=run)
