@@ -101,7 +101,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "f322bb2ed40fe0ea"
+MODEL_HASH = "e13b2d301dbd0f72"
 NAME = "full"
 TITLE = "Both axes of the thesis, all drives"
 # How many numbers `prepare` writes.
@@ -239,7 +239,7 @@ def constants(p):
 
 
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
-def mass_and_forces(t, x, u, p, m, c):
+def mass_and_forces(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan, c):
     """Return mass matrix, forces and what else the functions below have in common."""
     theta_pan, theta_tilt, omega_pan, omega_tilt, theta_gear_pan = x[0], x[1], x[2], x[3], x[4]
     omega_gear_pan, i_pan, i_tilt = x[5], x[6], x[7]
@@ -248,7 +248,6 @@ def mass_and_forces(t, x, u, p, m, c):
     a_F_c_pan, a_F_s_pan, a_v_s_pan, a_F_v_pan, k_shaft_pan = p[17], p[18], p[19], p[20], p[22]
     d_shaft_pan, L_pan, R_pan, K_t_pan, N_pan, L_tilt = p[23], p[24], p[25], p[26], p[28], p[29]
     R_tilt, K_t_tilt, J_motor_tilt, b_motor_tilt, N_tilt = p[30], p[31], p[32], p[33], p[34]
-    slide_pan, slide_tilt, side_pan, active_pan = m[0], m[1], m[2], m[3]
     inertia_pan_sin_cos_tilt, inertia_pan_sin_sq_tilt, coupling_cos_tilt = c[0], c[1], c[2]
     coupling_sin_tilt, half_gap_pan, inertia_tilt, inertia_pan = c[3], c[4], c[5], c[6]
     lead_tilt_inverse, lowered_tilt, l_ground_tilt_sq_plus_r_arm_tilt_sq = c[7], c[8], c[9]
@@ -357,13 +356,13 @@ def prepared_derivative(t, x, u, p, m, c, dx):
     dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt, rate_of_theta_gear_pan,
       accel_gear_pan, rate_of_i_pan, rate_of_i_tilt.
     """
-    forces = mass_and_forces(t, x, u, p, m, c)
+    slide_pan, slide_tilt, side_pan, active_pan = m[0], m[1], m[2], m[3]
+    forces = mass_and_forces(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan, c)
     force_pan, mass_pan, mass_pan_tilt = forces[8], forces[9], forces[10]
     mass_pan_tilt_sq, force_pan_mass_pan_tilt, force_tilt = forces[11], forces[14], forces[19]
     mass_tilt, force_gear_pan, rate_of_i_pan = forces[20], forces[23], forces[24]
     rate_of_i_tilt = forces[25]
     omega_pan, omega_tilt, omega_gear_pan = x[2], x[3], x[5]
-    slide_pan, slide_tilt = m[0], m[1]
     inverse_mass_gear_pan = c[16]
     dx[0] = omega_pan  # rate_of_theta_pan
     dx[1] = omega_tilt  # rate_of_theta_tilt
@@ -392,6 +391,41 @@ def mode_derivative(t, x, u, p, m, dx):
     prepared_derivative(t, x, u, p, m, constants(p), dx)
 
 
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def guard_values(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan):
+    """Return what `guards` writes, in modes that are given one by one."""
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan, c)
+    d_shaft_pan_omega_gear_pan_minus_omega_pan = forces[3]
+    theta_pan_minus_theta_gear_pan, shaft_torque_pan, force_pan = forces[4], forces[7], forces[8]
+    mass_pan, mass_pan_tilt, mass_pan_tilt_sq = forces[9], forces[10], forces[11]
+    load_torque_tilt, force_tilt_term_2, force_tilt = forces[16], forces[18], forces[19]
+    mass_tilt = forces[20]
+    i_pan = x[6]
+    F_s_pan, a_F_s_pan, k_shaft_pan = p[14], p[18], p[22]
+    half_gap_pan, lowered_tilt, raised_tilt, K_t_pan_N_pan = c[4], c[8], c[12], c[17]
+    raised_tilt_minus_lowered_tilt = c[18]
+    slide_tilt_sq = slide_tilt * slide_tilt
+    inverse_determinant = 1.0 / (mass_pan * mass_tilt - mass_pan_tilt_sq * slide_tilt_sq)
+    accel_pan = (inverse_determinant * (force_pan * mass_tilt
+        - force_tilt * mass_pan_tilt * slide_tilt_sq))
+    holding_pan = K_t_pan_N_pan * i_pan - shaft_torque_pan
+    forward_pan = F_s_pan * (a_F_s_pan + 1.0)
+    backward_pan = F_s_pan * (1.0 - a_F_s_pan)
+    holding_tilt = -accel_pan * mass_pan_tilt + force_tilt_term_2
+    forward_tilt_term = 0.5 * load_torque_tilt * (lowered_tilt + raised_tilt - 2.0)
+    abs_load_torque_tilt = abs(load_torque_tilt)
+    forward_tilt = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt - forward_tilt_term
+    backward_tilt = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt + forward_tilt_term
+    separation_pan = -theta_pan_minus_theta_gear_pan
+    upper_pan = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (-half_gap_pan
+        - theta_pan_minus_theta_gear_pan))
+    lower_pan = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (half_gap_pan
+        - theta_pan_minus_theta_gear_pan))
+    return (holding_pan, forward_pan, backward_pan, holding_tilt, forward_tilt, backward_tilt,
+        separation_pan, half_gap_pan, upper_pan, lower_pan)
+
+
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def guards(t, x, u, p, m, g):
     """Write holding and breakaway torques, gap separations and contact torques into g.
@@ -401,38 +435,9 @@ def guards(t, x, u, p, m, g):
     g: holding_pan, forward_pan, backward_pan, holding_tilt, forward_tilt, backward_tilt,
       separation_pan, half_gap_pan, upper_pan, lower_pan.
     """
-    c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
-    d_shaft_pan_omega_gear_pan_minus_omega_pan = forces[3]
-    theta_pan_minus_theta_gear_pan, shaft_torque_pan, force_pan = forces[4], forces[7], forces[8]
-    mass_pan, mass_pan_tilt, mass_pan_tilt_sq = forces[9], forces[10], forces[11]
-    load_torque_tilt, force_tilt_term_2, force_tilt = forces[16], forces[18], forces[19]
-    mass_tilt = forces[20]
-    i_pan = x[6]
-    F_s_pan, a_F_s_pan, k_shaft_pan = p[14], p[18], p[22]
-    slide_tilt = m[1]
-    half_gap_pan, lowered_tilt, raised_tilt, K_t_pan_N_pan = c[4], c[8], c[12], c[17]
-    raised_tilt_minus_lowered_tilt = c[18]
-    slide_tilt_sq = slide_tilt * slide_tilt
-    inverse_determinant = 1.0 / (mass_pan * mass_tilt - mass_pan_tilt_sq * slide_tilt_sq)
-    accel_pan = (inverse_determinant * (force_pan * mass_tilt
-        - force_tilt * mass_pan_tilt * slide_tilt_sq))
-    g[0] = K_t_pan_N_pan * i_pan - shaft_torque_pan  # holding_pan
-    g[1] = F_s_pan * (a_F_s_pan + 1.0)  # forward_pan
-    g[2] = F_s_pan * (1.0 - a_F_s_pan)  # backward_pan
-    g[3] = -accel_pan * mass_pan_tilt + force_tilt_term_2  # holding_tilt
-    forward_tilt_term = 0.5 * load_torque_tilt * (lowered_tilt + raised_tilt - 2.0)
-    abs_load_torque_tilt = abs(load_torque_tilt)
-    # forward_tilt
-    g[4] = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt - forward_tilt_term
-    # backward_tilt
-    g[5] = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt + forward_tilt_term
-    g[6] = -theta_pan_minus_theta_gear_pan  # separation_pan
-    g[7] = half_gap_pan
-    g[8] = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (-half_gap_pan
-        - theta_pan_minus_theta_gear_pan))  # upper_pan
-    g[9] = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (half_gap_pan
-        - theta_pan_minus_theta_gear_pan))  # lower_pan
+    slide_pan, slide_tilt, side_pan, active_pan = m[0], m[1], m[2], m[3]
+    (g[0], g[1], g[2], g[3], g[4], g[5], g[6], g[7], g[8], g[9]) = guard_values(t, x, u, p,
+        slide_pan, slide_tilt, side_pan, active_pan)
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -443,8 +448,9 @@ def energy(t, x, u, p, m, e):
       see MODE_NAMES; e [3] in J, W and W.
     e: stored, power_in, dissipated.
     """
+    slide_pan, slide_tilt, side_pan, active_pan = m[0], m[1], m[2], m[3]
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan, c)
     cos_tilt, sin_tilt, omega_gear_pan_minus_omega_pan = forces[0], forces[1], forces[2]
     d_shaft_pan_omega_gear_pan_minus_omega_pan, shaft_torque_pan_term = forces[3], forces[5]
     k_shaft_pan_shaft_torque_pan_term, mass_pan, mass_pan_tilt = forces[6], forces[9], forces[10]
@@ -454,7 +460,6 @@ def energy(t, x, u, p, m, e):
     u_pan, u_tilt = u[0], u[1]
     b_pan, b_tilt, k_shaft_pan, L_pan, R_pan, L_tilt = p[11], p[12], p[22], p[24], p[25], p[29]
     R_tilt, b_motor_tilt = p[30], p[33]
-    side_pan, active_pan = m[2], m[3]
     gravity_cos_tilt, gravity_sin_tilt, mass_gear_pan = c[13], c[14], c[15]
     side_pan_sq = side_pan * side_pan
     i_pan_sq = i_pan * i_pan
@@ -486,8 +491,9 @@ def equation_error(t, x, u, p, m, r):
     x: STATE_NAMES, then given_accel_pan, given_accel_tilt, given_accel_gear_pan.
     r: torque_pan, torque_tilt, torque_gear_pan, rate_of_i_pan, rate_of_i_tilt.
     """
+    slide_pan, slide_tilt, side_pan, active_pan = m[0], m[1], m[2], m[3]
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan, c)
     force_pan, mass_pan, mass_pan_tilt, force_tilt = forces[8], forces[9], forces[10], forces[19]
     mass_tilt, force_gear_pan, rate_of_i_pan = forces[20], forces[23], forces[24]
     rate_of_i_tilt = forces[25]
@@ -508,8 +514,9 @@ def mass_matrix(t, x, u, p, m, M):
     t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
       see MODE_NAMES; M [3, 3] in kg m^2.
     """
+    slide_pan, slide_tilt, side_pan, active_pan = m[0], m[1], m[2], m[3]
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan, c)
     mass_pan, mass_pan_tilt, mass_tilt = forces[9], forces[10], forces[20]
     mass_gear_pan = c[15]
     M[0, 0] = mass_pan
@@ -531,8 +538,9 @@ def gravity_torque(t, x, u, p, m, G):
       see MODE_NAMES; G [3] in N m.
     G: gravity_torque_pan, gravity_torque_tilt, gravity_torque_gear_pan.
     """
+    slide_pan, slide_tilt, side_pan, active_pan = m[0], m[1], m[2], m[3]
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan, c)
     minus_gravity_torque_tilt = forces[15]
     G[0] = 0.0  # gravity_torque_pan
     G[1] = -minus_gravity_torque_tilt  # gravity_torque_tilt
@@ -692,7 +700,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     accel_pan_by_theta_gear_pan_term = -0.5 * lost_lowering_tilt + 0.5 * lost_raising_tilt
     force_tilt_by_carried_tilt = (-slide_tilt * (accel_pan_by_theta_gear_pan_term * slide_tilt
         + 0.5 * lost_lowering_tilt_plus_lost_raising_tilt * slide_tilt * (0.0
-        if carried_tilt_slide_tilt == 0 else math.copysign(1, carried_tilt_slide_tilt))))
+        if carried_tilt_slide_tilt == 0.0 else math.copysign(1.0, carried_tilt_slide_tilt))))
     balance_tilt_by_theta_gear_pan = carried_tilt_by_theta_gear_pan * force_tilt_by_carried_tilt
     accel_pan_by_theta_gear_pan = (inverse_determinant * (-balance_tilt_by_theta_gear_pan
         * mass_pan_tilt_slide_tilt_sq + holding_pan_by_theta_pan * mass_tilt))
@@ -780,7 +788,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + driving_torque_tilt * load_inertia_tilt_by_theta_tilt
         + driving_torque_tilt_by_theta_tilt * load_inertia_tilt)
     lost_lowering_tilt_by_theta_tilt_term = (one_minus_lowered_tilt * (0.0
-        if lost_lowering_tilt_term == 0 else math.copysign(1, lost_lowering_tilt_term))
+        if lost_lowering_tilt_term == 0.0 else math.copysign(1.0, lost_lowering_tilt_term))
         / (lost_lowering_tilt_term * lost_lowering_tilt_term))
     lost_lowering_tilt_by_load_inertia_tilt = -lost_lowering_tilt_by_theta_tilt_term * lowered_tilt
     lost_lowering_tilt_by_ratio_tilt = (-lost_lowering_tilt_by_theta_tilt_term
@@ -1516,7 +1524,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         return
     gx[0, 0] = holding_pan_by_theta_pan
     gx[3, 0] = accel_pan_by_theta_gear_pan * mass_pan_tilt  # holding_tilt_by_theta_pan
-    sign_load_torque_tilt = 0.0 if load_torque_tilt == 0 else math.copysign(1, load_torque_tilt)
+    sign_load_torque_tilt = 0.0 if load_torque_tilt == 0.0 else math.copysign(1.0, load_torque_tilt)
     raised_tilt_minus_lowered_tilt = -lowered_tilt + raised_tilt
     forward_tilt_by_theta_pan_term = 0.5 * lowered_tilt + 0.5 * raised_tilt - 1.0
     forward_tilt_by_theta_pan_term_2 = (-forward_tilt_by_theta_pan_term
@@ -1872,37 +1880,51 @@ def margins(p, margin):
     margin[3] = math.pi * d_screw_tilt - f_screw_tilt * lead_tilt  # requirement_3
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def touching(separation, half_gap, upper, lower):
+    """Return side and activity of a contact: the face beyond half the gap, active if it pushes."""
+    side = 1.0 if separation > 0.0 else -1.0
+    if side * separation > half_gap:
+        torque = upper if side > 0.0 else lower
+        return side, (1.0 if side * torque > 0.0 else 0.0)
+    return 0.0, 0.0
+
+
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def breaking_away(slide, holding, forward, backward):
+    """Return the direction of a friction: if it sticks, that of a torque beyond breakaway."""
+    if slide == 0.0 and holding > forward:
+        return 1.0
+    if slide == 0.0 and -holding > backward:
+        return -1.0
+    return slide
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def implied_modes(t, x, u, p):
+    """Return the modes that a state implies, in the order of MODE_NAMES: contact from the
+    separation, sticking from the holding torque.
+    """
+    omega_tilt, omega_gear_pan = x[3], x[5]
+    g = guard_values(t, x, u, p, 0.0, 0.0, 0.0, 0.0)
+    side_pan, active_pan = touching(g[6], g[7], g[8], g[9])
+    slide_pan, slide_tilt = np.sign(omega_gear_pan), np.sign(omega_tilt)
+    g = guard_values(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan)
+    slide_pan = breaking_away(slide_pan, g[0], g[1], g[2])
+    slide_tilt = breaking_away(slide_tilt, g[3], g[4], g[5])
+    return slide_pan, slide_tilt, side_pan, active_pan
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def initial_modes(t, x, u, p, m):
-    """Find the modes of a state: contact from the separation, sticking from the holding torque."""
-    frictions = len(FRICTION_RATES)
-    contacts = (len(m) - frictions) // 2
-    g = np.empty(3 * frictions + 4 * contacts)
-    m[:] = 0.0
-    guards(t, x, u, p, m, g)
-    for k in range(contacts):
-        at = 3 * frictions + 4 * k
-        side = 1.0 if g[at] > 0.0 else -1.0
-        if side * g[at] > g[at + 1]:
-            torque = g[at + 2] if side > 0.0 else g[at + 3]
-            m[frictions + 2 * k] = side
-            m[frictions + 2 * k + 1] = 1.0 if side * torque > 0.0 else 0.0
-    for k in range(frictions):
-        m[k] = np.sign(x[FRICTION_RATES[k]])
-    guards(t, x, u, p, m, g)
-    for k in range(frictions):
-        if m[k] == 0.0 and g[3 * k] > g[3 * k + 1]:
-            m[k] = 1.0
-        elif m[k] == 0.0 and -g[3 * k] > g[3 * k + 2]:
-            m[k] = -1.0
+    """Write the modes that a state implies into m; see MODE_NAMES."""
+    m[0], m[1], m[2], m[3] = implied_modes(t, x, u, p)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def state_derivative(t, x, u, p, dx):
     """Write the time derivative of the state into dx, in the modes that the state implies."""
-    m = np.empty(len(MODE_NAMES))
-    initial_modes(t, x, u, p, m)
-    mode_derivative(t, x, u, p, m, dx)
+    mode_derivative(t, x, u, p, implied_modes(t, x, u, p), dx)
 
 
 # What the field calls some of these functions.
@@ -1986,4 +2008,4 @@ EFFECTS = (
      "linear actuator with lead screw and linkage",
      "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6", "", False),
 )
-# END sha256 1b26dd8b272f8b8a96d1d6648500e1cbc7f273bbd89e385a80a56c0bdbc4c1c1
+# END sha256 a37e04f9a67ee1039e35a91530407cc5f2a4217dff35cd3870a014e57085d7ef

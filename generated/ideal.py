@@ -28,7 +28,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "01e0ea5b0bb9b398"
+MODEL_HASH = "5676713e78093d00"
 NAME = "ideal"
 TITLE = "Balanced pan-tilt platform of the thesis"
 # How many numbers `prepare` writes.
@@ -74,11 +74,11 @@ def constants(p):
     inertia_pan_sin_sq_tilt = J_x_tilt - J_z_tilt
     inertia_pan = J_pan + J_z_tilt
     inverse_mass_tilt = 1.0 / J_y_tilt
-    return (inertia_pan_sin_sq_tilt, inertia_pan, inverse_mass_tilt)
+    return inertia_pan_sin_sq_tilt, inertia_pan, inverse_mass_tilt
 
 
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
-def mass_and_forces(t, x, u, p, m, c):
+def mass_and_forces(t, x, u, p, c):
     """Return mass matrix, forces and what else the functions below have in common."""
     theta_tilt, omega_pan, omega_tilt = x[1], x[2], x[3]
     tau_pan, tau_tilt = u[0], u[1]
@@ -91,7 +91,7 @@ def mass_and_forces(t, x, u, p, m, c):
     force_pan = -b_pan * omega_pan - 2.0 * coriolis * omega_tilt + tau_pan
     mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
     force_tilt = -b_tilt * omega_tilt + coriolis * omega_pan + tau_tilt
-    return (force_pan, mass_pan, force_tilt)
+    return force_pan, mass_pan, force_tilt
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -114,7 +114,7 @@ def prepared_derivative(t, x, u, p, m, c, dx):
       MODE_NAMES; c [3] of prepare; dx [4] in STATE_UNITS per s.
     dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt.
     """
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, c)
     force_pan, mass_pan, force_tilt = forces[0], forces[1], forces[2]
     omega_pan, omega_tilt = x[2], x[3]
     inverse_mass_tilt = c[2]
@@ -155,7 +155,7 @@ def energy(t, x, u, p, m, e):
     e: stored, power_in, dissipated.
     """
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, c)
     mass_pan = forces[1]
     omega_pan, omega_tilt = x[2], x[3]
     tau_pan, tau_tilt = u[0], u[1]
@@ -177,7 +177,7 @@ def equation_error(t, x, u, p, m, r):
     r: torque_pan, torque_tilt.
     """
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, c)
     force_pan, mass_pan, force_tilt = forces[0], forces[1], forces[2]
     given_accel_pan, given_accel_tilt = x[4], x[5]
     J_y_tilt = p[2]
@@ -193,7 +193,7 @@ def mass_matrix(t, x, u, p, m, M):
       MODE_NAMES; M [2, 2] in kg m^2.
     """
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, c)
     mass_pan = forces[1]
     J_y_tilt = p[2]
     M[0, 0] = mass_pan
@@ -445,4 +445,4 @@ EFFECTS = (
      "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
      "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
 )
-# END sha256 7560a36feb3f68f962016263db8d64da08a7b0a0aa71b7e286f6bbb60148ba2c
+# END sha256 c90541e69754575307c8259d95274ddc11f55161c170f219a8edf580643f2c36

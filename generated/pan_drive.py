@@ -32,7 +32,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "847975f86cd5685a"
+MODEL_HASH = "69b092d85d03fb95"
 NAME = "pan_drive"
 TITLE = "Pan drive of the thesis"
 # How many numbers `prepare` writes.
@@ -96,18 +96,17 @@ def constants(p):
     mass_gear_pan = J_motor_pan * (N_pan * N_pan)
     inverse_mass_gear_pan = 1.0 / mass_gear_pan
     K_t_pan_N_pan = K_t_pan * N_pan
-    return (half_gap_pan, inverse_mass_pan, mass_gear_pan, inverse_mass_gear_pan, K_t_pan_N_pan)
+    return half_gap_pan, inverse_mass_pan, mass_gear_pan, inverse_mass_gear_pan, K_t_pan_N_pan
 
 
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
-def mass_and_forces(t, x, u, p, m, c):
+def mass_and_forces(t, x, u, p, slide_pan, side_pan, active_pan, c):
     """Return mass matrix, forces and what else the functions below have in common."""
     theta_pan, omega_pan, theta_gear_pan, omega_gear_pan, i_pan = x[0], x[1], x[2], x[3], x[4]
     u_pan = u[0]
     b_pan, F_c_pan, F_s_pan, v_s_pan, F_v_pan, a_F_c_pan = p[1], p[2], p[3], p[4], p[5], p[6]
     a_F_s_pan, a_v_s_pan, a_F_v_pan, k_shaft_pan, d_shaft_pan = p[7], p[8], p[9], p[11], p[12]
     L_pan, R_pan, K_t_pan, N_pan = p[13], p[14], p[15], p[17]
-    slide_pan, side_pan, active_pan = m[0], m[1], m[2]
     half_gap_pan, K_t_pan_N_pan = c[0], c[4]
     omega_gear_pan_minus_omega_pan = omega_gear_pan - omega_pan
     d_shaft_pan_omega_gear_pan_minus_omega_pan = d_shaft_pan * omega_gear_pan_minus_omega_pan
@@ -153,10 +152,10 @@ def prepared_derivative(t, x, u, p, m, c, dx):
       see MODE_NAMES; c [5] of prepare; dx [5] in STATE_UNITS per s.
     dx: rate_of_theta_pan, accel_pan, rate_of_theta_gear_pan, accel_gear_pan, rate_of_i_pan.
     """
-    forces = mass_and_forces(t, x, u, p, m, c)
+    slide_pan, side_pan, active_pan = m[0], m[1], m[2]
+    forces = mass_and_forces(t, x, u, p, slide_pan, side_pan, active_pan, c)
     force_pan, force_gear_pan, rate_of_i_pan = forces[6], forces[9], forces[10]
     omega_pan, omega_gear_pan = x[1], x[3]
-    slide_pan = m[0]
     inverse_mass_pan, inverse_mass_gear_pan = c[1], c[3]
     dx[0] = omega_pan  # rate_of_theta_pan
     dx[1] = force_pan * inverse_mass_pan  # accel_pan
@@ -176,6 +175,28 @@ def mode_derivative(t, x, u, p, m, dx):
     prepared_derivative(t, x, u, p, m, constants(p), dx)
 
 
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def guard_values(t, x, u, p, slide_pan, side_pan, active_pan):
+    """Return what `guards` writes, in modes that are given one by one."""
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, slide_pan, side_pan, active_pan, c)
+    d_shaft_pan_omega_gear_pan_minus_omega_pan = forces[1]
+    theta_pan_minus_theta_gear_pan, shaft_torque_pan = forces[2], forces[5]
+    i_pan = x[4]
+    F_s_pan, a_F_s_pan, k_shaft_pan = p[3], p[7], p[11]
+    half_gap_pan, K_t_pan_N_pan = c[0], c[4]
+    holding_pan = K_t_pan_N_pan * i_pan - shaft_torque_pan
+    forward_pan = F_s_pan * (a_F_s_pan + 1.0)
+    backward_pan = F_s_pan * (1.0 - a_F_s_pan)
+    separation_pan = -theta_pan_minus_theta_gear_pan
+    upper_pan = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (-half_gap_pan
+        - theta_pan_minus_theta_gear_pan))
+    lower_pan = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (half_gap_pan
+        - theta_pan_minus_theta_gear_pan))
+    return (holding_pan, forward_pan, backward_pan, separation_pan, half_gap_pan, upper_pan,
+        lower_pan)
+
+
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def guards(t, x, u, p, m, g):
     """Write holding and breakaway torques, gap separations and contact torques into g.
@@ -184,22 +205,9 @@ def guards(t, x, u, p, m, g):
       see MODE_NAMES; g [7] in N m and rad.
     g: holding_pan, forward_pan, backward_pan, separation_pan, half_gap_pan, upper_pan, lower_pan.
     """
-    c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
-    d_shaft_pan_omega_gear_pan_minus_omega_pan = forces[1]
-    theta_pan_minus_theta_gear_pan, shaft_torque_pan = forces[2], forces[5]
-    i_pan = x[4]
-    F_s_pan, a_F_s_pan, k_shaft_pan = p[3], p[7], p[11]
-    half_gap_pan, K_t_pan_N_pan = c[0], c[4]
-    g[0] = K_t_pan_N_pan * i_pan - shaft_torque_pan  # holding_pan
-    g[1] = F_s_pan * (a_F_s_pan + 1.0)  # forward_pan
-    g[2] = F_s_pan * (1.0 - a_F_s_pan)  # backward_pan
-    g[3] = -theta_pan_minus_theta_gear_pan  # separation_pan
-    g[4] = half_gap_pan
-    g[5] = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (-half_gap_pan
-        - theta_pan_minus_theta_gear_pan))  # upper_pan
-    g[6] = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (half_gap_pan
-        - theta_pan_minus_theta_gear_pan))  # lower_pan
+    slide_pan, side_pan, active_pan = m[0], m[1], m[2]
+    (g[0], g[1], g[2], g[3], g[4], g[5], g[6]) = guard_values(t, x, u, p, slide_pan, side_pan,
+        active_pan)
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -210,8 +218,9 @@ def energy(t, x, u, p, m, e):
       see MODE_NAMES; e [3] in J, W and W.
     e: stored, power_in, dissipated.
     """
+    slide_pan, side_pan, active_pan = m[0], m[1], m[2]
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, slide_pan, side_pan, active_pan, c)
     omega_gear_pan_minus_omega_pan = forces[0]
     d_shaft_pan_omega_gear_pan_minus_omega_pan, shaft_torque_pan_term = forces[1], forces[3]
     k_shaft_pan_shaft_torque_pan_term, omega_gear_pan_sq = forces[4], forces[7]
@@ -219,7 +228,6 @@ def energy(t, x, u, p, m, e):
     omega_pan, omega_gear_pan, i_pan = x[1], x[3], x[4]
     u_pan = u[0]
     J_pan, b_pan, k_shaft_pan, L_pan, R_pan = p[0], p[1], p[11], p[13], p[14]
-    side_pan, active_pan = m[1], m[2]
     mass_gear_pan = c[2]
     side_pan_sq = side_pan * side_pan
     i_pan_sq = i_pan * i_pan
@@ -244,8 +252,9 @@ def equation_error(t, x, u, p, m, r):
     x: STATE_NAMES, then given_accel_pan, given_accel_gear_pan.
     r: torque_pan, torque_gear_pan, rate_of_i_pan.
     """
+    slide_pan, side_pan, active_pan = m[0], m[1], m[2]
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, slide_pan, side_pan, active_pan, c)
     force_pan, force_gear_pan, rate_of_i_pan = forces[6], forces[9], forces[10]
     given_accel_pan, given_accel_gear_pan = x[5], x[6]
     J_pan = p[0]
@@ -493,37 +502,50 @@ def margins(p, margin):
     margin[0] = -F_c_pan + F_s_pan  # requirement_0
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def touching(separation, half_gap, upper, lower):
+    """Return side and activity of a contact: the face beyond half the gap, active if it pushes."""
+    side = 1.0 if separation > 0.0 else -1.0
+    if side * separation > half_gap:
+        torque = upper if side > 0.0 else lower
+        return side, (1.0 if side * torque > 0.0 else 0.0)
+    return 0.0, 0.0
+
+
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def breaking_away(slide, holding, forward, backward):
+    """Return the direction of a friction: if it sticks, that of a torque beyond breakaway."""
+    if slide == 0.0 and holding > forward:
+        return 1.0
+    if slide == 0.0 and -holding > backward:
+        return -1.0
+    return slide
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def implied_modes(t, x, u, p):
+    """Return the modes that a state implies, in the order of MODE_NAMES: contact from the
+    separation, sticking from the holding torque.
+    """
+    omega_gear_pan = x[3]
+    g = guard_values(t, x, u, p, 0.0, 0.0, 0.0)
+    side_pan, active_pan = touching(g[3], g[4], g[5], g[6])
+    slide_pan = np.sign(omega_gear_pan)
+    g = guard_values(t, x, u, p, slide_pan, side_pan, active_pan)
+    slide_pan = breaking_away(slide_pan, g[0], g[1], g[2])
+    return slide_pan, side_pan, active_pan
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def initial_modes(t, x, u, p, m):
-    """Find the modes of a state: contact from the separation, sticking from the holding torque."""
-    frictions = len(FRICTION_RATES)
-    contacts = (len(m) - frictions) // 2
-    g = np.empty(3 * frictions + 4 * contacts)
-    m[:] = 0.0
-    guards(t, x, u, p, m, g)
-    for k in range(contacts):
-        at = 3 * frictions + 4 * k
-        side = 1.0 if g[at] > 0.0 else -1.0
-        if side * g[at] > g[at + 1]:
-            torque = g[at + 2] if side > 0.0 else g[at + 3]
-            m[frictions + 2 * k] = side
-            m[frictions + 2 * k + 1] = 1.0 if side * torque > 0.0 else 0.0
-    for k in range(frictions):
-        m[k] = np.sign(x[FRICTION_RATES[k]])
-    guards(t, x, u, p, m, g)
-    for k in range(frictions):
-        if m[k] == 0.0 and g[3 * k] > g[3 * k + 1]:
-            m[k] = 1.0
-        elif m[k] == 0.0 and -g[3 * k] > g[3 * k + 2]:
-            m[k] = -1.0
+    """Write the modes that a state implies into m; see MODE_NAMES."""
+    m[0], m[1], m[2] = implied_modes(t, x, u, p)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def state_derivative(t, x, u, p, dx):
     """Write the time derivative of the state into dx, in the modes that the state implies."""
-    m = np.empty(len(MODE_NAMES))
-    initial_modes(t, x, u, p, m)
-    mode_derivative(t, x, u, p, m, dx)
+    mode_derivative(t, x, u, p, implied_modes(t, x, u, p), dx)
 
 
 # What the field calls some of these functions.
@@ -588,4 +610,4 @@ EFFECTS = (
     ("dc_motor", "pan", ("L_pan", "R_pan", "K_t_pan", "J_motor_pan", "N_pan"), (), (),
      "geared DC motor", "thesis Eq. 3.10, Eq. 3.11 with erratum 8", "", False),
 )
-# END sha256 8b25a37295a279918bafef55dcdbbb975afbb430f4fcfbf4bbeeeabf33ef3a50
+# END sha256 6bb5bbeebb90a2afad1e1361e18ee4120727466a9872b86ea80378c7201d5ea2

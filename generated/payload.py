@@ -43,7 +43,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "49d58dccc2db34c2"
+MODEL_HASH = "3c1afdab84e891da"
 NAME = "payload"
 TITLE = "Pan-tilt platform of the thesis with its payload"
 # How many numbers `prepare` writes.
@@ -115,7 +115,7 @@ def constants(p):
 
 
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
-def mass_and_forces(t, x, u, p, m, c):
+def mass_and_forces(t, x, u, p, c):
     """Return mass matrix, forces and what else the functions below have in common."""
     theta_tilt, omega_pan, omega_tilt = x[1], x[2], x[3]
     tau_pan, tau_tilt = u[0], u[1]
@@ -159,7 +159,7 @@ def prepared_derivative(t, x, u, p, m, c, dx):
       see MODE_NAMES; c [8] of prepare; dx [4] in STATE_UNITS per s.
     dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt.
     """
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, c)
     force_pan, force_tilt, mass_pan, mass_pan_tilt = forces[2], forces[4], forces[5], forces[6]
     omega_pan, omega_tilt = x[2], x[3]
     inertia_tilt = c[6]
@@ -201,7 +201,7 @@ def energy(t, x, u, p, m, e):
     e: stored, power_in, dissipated.
     """
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, c)
     cos_tilt, sin_tilt, mass_pan, mass_pan_tilt = forces[0], forces[1], forces[5], forces[6]
     omega_pan, omega_tilt = x[2], x[3]
     tau_pan, tau_tilt = u[0], u[1]
@@ -226,7 +226,7 @@ def equation_error(t, x, u, p, m, r):
     r: torque_pan, torque_tilt.
     """
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, c)
     force_pan, force_tilt, mass_pan, mass_pan_tilt = forces[2], forces[4], forces[5], forces[6]
     given_accel_pan, given_accel_tilt = x[4], x[5]
     inertia_tilt = c[6]
@@ -243,7 +243,7 @@ def mass_matrix(t, x, u, p, m, M):
       see MODE_NAMES; M [2, 2] in kg m^2.
     """
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, c)
     mass_pan, mass_pan_tilt = forces[5], forces[6]
     inertia_tilt = c[6]
     M[0, 0] = mass_pan
@@ -261,7 +261,7 @@ def gravity_torque(t, x, u, p, m, G):
     G: gravity_torque_pan, gravity_torque_tilt.
     """
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, c)
     minus_gravity_torque_tilt = forces[3]
     G[0] = 0.0  # gravity_torque_pan
     G[1] = -minus_gravity_torque_tilt  # gravity_torque_tilt
@@ -664,4 +664,4 @@ EFFECTS = (
      "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
      "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
 )
-# END sha256 45856c2fa8e02f53d8d10d1458ebac3473d1371d88ffe279545e0824741ae6d4
+# END sha256 442bf805469524a5e897e6fe754198046318b2dc055f36378c265d770d81c7f0

@@ -60,7 +60,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "d4e9de38169b9507"
+MODEL_HASH = "6b01b7e0a525e380"
 NAME = "tilt_drive"
 TITLE = "Tilt drive of the thesis"
 # How many numbers `prepare` writes.
@@ -150,13 +150,12 @@ def constants(p):
 
 
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
-def mass_and_forces(t, x, u, p, m, c):
+def mass_and_forces(t, x, u, p, slide_tilt, c):
     """Return mass matrix, forces and what else the functions below have in common."""
     theta_tilt, omega_tilt, i_tilt = x[0], x[1], x[2]
     u_tilt = u[0]
     b_tilt, L_tilt, R_tilt, K_t_tilt, J_motor_tilt = p[4], p[5], p[6], p[7], p[8]
     b_motor_tilt, N_tilt = p[9], p[10]
-    slide_tilt = m[0]
     l_ground_tilt_sq_plus_r_arm_tilt_sq, linkage_cos_tilt, linkage_sin_tilt = c[0], c[1], c[2]
     lead_tilt_inverse, gravity_cos_tilt, gravity_sin_tilt, inertia_tilt = c[3], c[4], c[5], c[6]
     lowered_tilt, raised_tilt = c[7], c[8]
@@ -227,10 +226,10 @@ def prepared_derivative(t, x, u, p, m, c, dx):
       see MODE_NAMES; c [10] of prepare; dx [3] in STATE_UNITS per s.
     dx: rate_of_theta_tilt, accel_tilt, rate_of_i_tilt.
     """
-    forces = mass_and_forces(t, x, u, p, m, c)
+    slide_tilt = m[0]
+    forces = mass_and_forces(t, x, u, p, slide_tilt, c)
     force_tilt, mass_tilt, rate_of_i_tilt = forces[10], forces[11], forces[12]
     omega_tilt = x[1]
-    slide_tilt = m[0]
     dx[0] = omega_tilt  # rate_of_theta_tilt
     inverse_mass_tilt = 1.0 / mass_tilt
     dx[1] = force_tilt * inverse_mass_tilt * (slide_tilt * slide_tilt)  # accel_tilt
@@ -248,6 +247,23 @@ def mode_derivative(t, x, u, p, m, dx):
     prepared_derivative(t, x, u, p, m, constants(p), dx)
 
 
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def guard_values(t, x, u, p, slide_tilt):
+    """Return what `guards` writes, in modes that are given one by one."""
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, slide_tilt, c)
+    ratio_tilt, carried_tilt_term, carried_tilt_term_2 = forces[2], forces[4], forces[5]
+    load_torque_tilt = forces[8]
+    lowered_tilt, raised_tilt, raised_tilt_minus_lowered_tilt = c[7], c[8], c[9]
+    transmitted_torque_tilt = carried_tilt_term_2 * ratio_tilt
+    holding_tilt = -carried_tilt_term + load_torque_tilt + transmitted_torque_tilt
+    forward_tilt_term = 0.5 * load_torque_tilt * (lowered_tilt + raised_tilt - 2.0)
+    abs_load_torque_tilt = abs(load_torque_tilt)
+    forward_tilt = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt - forward_tilt_term
+    backward_tilt = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt + forward_tilt_term
+    return holding_tilt, forward_tilt, backward_tilt
+
+
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def guards(t, x, u, p, m, g):
     """Write holding and breakaway torques, gap separations and contact torques into g.
@@ -256,19 +272,8 @@ def guards(t, x, u, p, m, g):
       see MODE_NAMES; g [3] in N m and rad.
     g: holding_tilt, forward_tilt, backward_tilt.
     """
-    c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
-    ratio_tilt, carried_tilt_term, carried_tilt_term_2 = forces[2], forces[4], forces[5]
-    load_torque_tilt = forces[8]
-    lowered_tilt, raised_tilt, raised_tilt_minus_lowered_tilt = c[7], c[8], c[9]
-    transmitted_torque_tilt = carried_tilt_term_2 * ratio_tilt
-    g[0] = -carried_tilt_term + load_torque_tilt + transmitted_torque_tilt  # holding_tilt
-    forward_tilt_term = 0.5 * load_torque_tilt * (lowered_tilt + raised_tilt - 2.0)
-    abs_load_torque_tilt = abs(load_torque_tilt)
-    # forward_tilt
-    g[1] = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt - forward_tilt_term
-    # backward_tilt
-    g[2] = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt + forward_tilt_term
+    slide_tilt = m[0]
+    g[0], g[1], g[2] = guard_values(t, x, u, p, slide_tilt)
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -279,8 +284,9 @@ def energy(t, x, u, p, m, e):
       see MODE_NAMES; e [3] in J, W and W.
     e: stored, power_in, dissipated.
     """
+    slide_tilt = m[0]
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, slide_tilt, c)
     cos_tilt, sin_tilt, omega_tilt_sq, ratio_tilt_sq = forces[0], forces[1], forces[3], forces[6]
     force_tilt_term, mass_tilt = forces[9], forces[11]
     omega_tilt, i_tilt = x[1], x[2]
@@ -305,8 +311,9 @@ def equation_error(t, x, u, p, m, r):
     x: STATE_NAMES, then given_accel_tilt.
     r: torque_tilt, rate_of_i_tilt.
     """
+    slide_tilt = m[0]
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, slide_tilt, c)
     force_tilt, mass_tilt, rate_of_i_tilt = forces[10], forces[11], forces[12]
     given_accel_tilt = x[3]
     r[0] = -force_tilt + given_accel_tilt * mass_tilt  # torque_tilt
@@ -320,8 +327,9 @@ def mass_matrix(t, x, u, p, m, M):
     t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
       see MODE_NAMES; M [1, 1] in kg m^2.
     """
+    slide_tilt = m[0]
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, slide_tilt, c)
     mass_tilt = forces[11]
     M[0, 0] = mass_tilt
 
@@ -334,8 +342,9 @@ def gravity_torque(t, x, u, p, m, G):
       see MODE_NAMES; G [1] in N m.
     G: gravity_torque_tilt.
     """
+    slide_tilt = m[0]
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, slide_tilt, c)
     minus_gravity_torque_tilt = forces[7]
     G[0] = -minus_gravity_torque_tilt  # gravity_torque_tilt
 
@@ -454,8 +463,8 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     one_minus_lowered_tilt = 1.0 - lowered_tilt
     lost_lowering_tilt_by_theta_tilt_term = J_motor_tilt_ratio_tilt_sq + inertia_tilt * lowered_tilt
     lost_lowering_tilt_by_theta_tilt_term_2 = (one_minus_lowered_tilt * (0.0
-        if lost_lowering_tilt_by_theta_tilt_term == 0
-        else math.copysign(1, lost_lowering_tilt_by_theta_tilt_term))
+        if lost_lowering_tilt_by_theta_tilt_term == 0.0
+        else math.copysign(1.0, lost_lowering_tilt_by_theta_tilt_term))
         / (lost_lowering_tilt_by_theta_tilt_term * lost_lowering_tilt_by_theta_tilt_term))
     lost_lowering_tilt_by_ratio_tilt = (-lost_lowering_tilt_by_theta_tilt_term_2
         * twice_J_motor_tilt_ratio_tilt)
@@ -492,7 +501,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     accel_tilt_twice_J_motor_tilt_ratio_tilt = accel_tilt * twice_J_motor_tilt_ratio_tilt
     force_tilt_by_carried_tilt = (-slide_tilt * (force_tilt_term * slide_tilt
         + 0.5 * lost_lowering_tilt_plus_lost_raising_tilt * slide_tilt * (0.0
-        if carried_tilt_slide_tilt == 0 else math.copysign(1, carried_tilt_slide_tilt))))
+        if carried_tilt_slide_tilt == 0.0 else math.copysign(1.0, carried_tilt_slide_tilt))))
     half_carried_tilt_slide_tilt = 0.5 * carried_tilt_slide_tilt
     force_tilt_by_lost_lowering_tilt = (-slide_tilt * (0.5 * abs_carried_tilt_slide_tilt
         - half_carried_tilt_slide_tilt))
@@ -807,7 +816,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     # holding_tilt_by_theta_tilt
     gx[0, 0] = (-J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_theta_tilt
         - carried_tilt_by_theta_tilt_term + force_tilt_by_ratio_tilt * ratio_tilt_by_theta_tilt)
-    sign_load_torque_tilt = 0.0 if load_torque_tilt == 0 else math.copysign(1, load_torque_tilt)
+    sign_load_torque_tilt = 0.0 if load_torque_tilt == 0.0 else math.copysign(1.0, load_torque_tilt)
     raised_tilt_minus_lowered_tilt = -lowered_tilt + raised_tilt
     forward_tilt_by_theta_tilt_term = 0.5 * lowered_tilt + 0.5 * raised_tilt - 1.0
     forward_tilt_by_theta_tilt_term_2 = (-forward_tilt_by_theta_tilt_term
@@ -966,37 +975,38 @@ def margins(p, margin):
     margin[2] = math.pi * d_screw_tilt - f_screw_tilt * lead_tilt  # requirement_2
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def breaking_away(slide, holding, forward, backward):
+    """Return the direction of a friction: if it sticks, that of a torque beyond breakaway."""
+    if slide == 0.0 and holding > forward:
+        return 1.0
+    if slide == 0.0 and -holding > backward:
+        return -1.0
+    return slide
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def implied_modes(t, x, u, p):
+    """Return the modes that a state implies, in the order of MODE_NAMES: contact from the
+    separation, sticking from the holding torque.
+    """
+    omega_tilt = x[1]
+    slide_tilt = np.sign(omega_tilt)
+    g = guard_values(t, x, u, p, slide_tilt)
+    slide_tilt = breaking_away(slide_tilt, g[0], g[1], g[2])
+    return (slide_tilt,)
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def initial_modes(t, x, u, p, m):
-    """Find the modes of a state: contact from the separation, sticking from the holding torque."""
-    frictions = len(FRICTION_RATES)
-    contacts = (len(m) - frictions) // 2
-    g = np.empty(3 * frictions + 4 * contacts)
-    m[:] = 0.0
-    guards(t, x, u, p, m, g)
-    for k in range(contacts):
-        at = 3 * frictions + 4 * k
-        side = 1.0 if g[at] > 0.0 else -1.0
-        if side * g[at] > g[at + 1]:
-            torque = g[at + 2] if side > 0.0 else g[at + 3]
-            m[frictions + 2 * k] = side
-            m[frictions + 2 * k + 1] = 1.0 if side * torque > 0.0 else 0.0
-    for k in range(frictions):
-        m[k] = np.sign(x[FRICTION_RATES[k]])
-    guards(t, x, u, p, m, g)
-    for k in range(frictions):
-        if m[k] == 0.0 and g[3 * k] > g[3 * k + 1]:
-            m[k] = 1.0
-        elif m[k] == 0.0 and -g[3 * k] > g[3 * k + 2]:
-            m[k] = -1.0
+    """Write the modes that a state implies into m; see MODE_NAMES."""
+    (m[0],) = implied_modes(t, x, u, p)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def state_derivative(t, x, u, p, dx):
     """Write the time derivative of the state into dx, in the modes that the state implies."""
-    m = np.empty(len(MODE_NAMES))
-    initial_modes(t, x, u, p, m)
-    mode_derivative(t, x, u, p, m, dx)
+    mode_derivative(t, x, u, p, implied_modes(t, x, u, p), dx)
 
 
 # What the field calls some of these functions.
@@ -1031,4 +1041,4 @@ EFFECTS = (
      "linear actuator with lead screw and linkage",
      "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6", "", False),
 )
-# END sha256 6672dddbe102e9215418ca76af04e299393161b31de01c2049c7fc2f1a249932
+# END sha256 bc94a5ff7958ee940d567612e8e9673f76beeaa6484c3696212819bba1f79f1a
