@@ -28,7 +28,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "5676713e78093d00"
+MODEL_HASH = "9ab41b3b47c56600"
 NAME = "ideal"
 TITLE = "Balanced pan-tilt platform of the thesis"
 # How many numbers `prepare` writes.
@@ -67,6 +67,8 @@ PARAMETERS = (
 )
 
 
+# Arguments: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS, all in SI;
+# modes m as MODE_NAMES; c as `prepare` writes it. Lengths are in brackets.
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def constants(p):
     """Return what depends on the parameters alone."""
@@ -98,7 +100,7 @@ def mass_and_forces(t, x, u, p, c):
 def prepare(p, c):
     """Write into c what prepared_derivative takes from the parameters alone.
 
-    p [6] in the units of PARAMETERS; c [3] of prepare.
+    p [6]; c [3].
     c: inertia_pan_sin_sq_tilt, inertia_pan, inverse_mass_tilt.
     """
     values = constants(p)
@@ -110,8 +112,7 @@ def prepare(p, c):
 def prepared_derivative(t, x, u, p, m, c, dx):
     """Write the time derivative of the state into dx in the modes m, c being prepared.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-      MODE_NAMES; c [3] of prepare; dx [4] in STATE_UNITS per s.
+    t, x [4], u [2], p [6], m [0], c [3]; dx [4] in STATE_UNITS per s.
     dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt.
     """
     forces = mass_and_forces(t, x, u, p, c)
@@ -129,8 +130,7 @@ def prepared_derivative(t, x, u, p, m, c, dx):
 def mode_derivative(t, x, u, p, m, dx):
     """Write the time derivative of the state into dx in the modes m.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-      MODE_NAMES; dx [4] in STATE_UNITS per s.
+    t, x [4], u [2], p [6], m [0]; dx [4] in STATE_UNITS per s.
     dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt.
     """
     prepared_derivative(t, x, u, p, m, constants(p), dx)
@@ -140,8 +140,7 @@ def mode_derivative(t, x, u, p, m, dx):
 def guards(t, x, u, p, m, g):
     """Write holding and breakaway torques, gap separations and contact torques into g.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-      MODE_NAMES; g [0] in N m and rad.
+    t, x [4], u [2], p [6], m [0]; g [0] in N m and rad.
     """
     return
 
@@ -150,8 +149,7 @@ def guards(t, x, u, p, m, g):
 def energy(t, x, u, p, m, e):
     """Write stored energy in J, power in and dissipated power in W into e.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-      MODE_NAMES; e [3] in J, W and W.
+    t, x [4], u [2], p [6], m [0]; e [3] in J, W and W.
     e: stored, power_in, dissipated.
     """
     c = constants(p)
@@ -171,8 +169,7 @@ def energy(t, x, u, p, m, e):
 def equation_error(t, x, u, p, m, r):
     """Write torques that rows lack, then other states' rates, into r; x ends in accelerations.
 
-    t in s; x [6] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-      MODE_NAMES; r [2] in N m, then STATE_UNITS per s.
+    t, x [6], u [2], p [6], m [0]; r [2] in N m, then STATE_UNITS per s.
     x: STATE_NAMES, then given_accel_pan, given_accel_tilt.
     r: torque_pan, torque_tilt.
     """
@@ -189,8 +186,7 @@ def equation_error(t, x, u, p, m, r):
 def mass_matrix(t, x, u, p, m, M):
     """Write the mass matrix of the joints, then of gear outputs, into M.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-      MODE_NAMES; M [2, 2] in kg m^2.
+    t, x [4], u [2], p [6], m [0]; M [2, 2] in kg m^2.
     """
     c = constants(p)
     forces = mass_and_forces(t, x, u, p, c)
@@ -206,8 +202,7 @@ def mass_matrix(t, x, u, p, m, M):
 def gravity_torque(t, x, u, p, m, G):
     """Write the torques that hold the machine against its weight into G.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-      MODE_NAMES; G [2] in N m.
+    t, x [4], u [2], p [6], m [0]; G [2] in N m.
     G: gravity_torque_pan, gravity_torque_tilt.
     """
     G[0] = 0.0  # gravity_torque_pan
@@ -218,13 +213,10 @@ def gravity_torque(t, x, u, p, m, G):
 def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     """Write the non-zero derivatives of dx into fx, fu, fp and those of guards into gx, gp.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-      MODE_NAMES; fx [4, 4]; fu [4, 2]; fp [4, 6]; gx [0, 4]; gp [0, 6].
-    fx: rows and columns as STATE_NAMES.
-    fu: rows as STATE_NAMES, columns as INPUT_NAMES.
-    fp: rows as STATE_NAMES, columns as PARAMETERS.
-    gx: rows as g of guards, columns as STATE_NAMES.
-    gp: rows as g of guards, columns as PARAMETERS.
+    t, x [4], u [2], p [6], m [0]; fx [4, 4]; fu [4, 2]; fp [4, 6]; gx [0, 4]; gp [0, 6].
+    fx: rows and columns as STATE_NAMES; fu: rows as STATE_NAMES, columns as INPUT_NAMES; fp: rows
+      as STATE_NAMES, columns as PARAMETERS; gx: rows as g of guards, columns as STATE_NAMES; gp:
+      rows as g of guards, columns as PARAMETERS.
     Where fp or gx is empty, it and what follows it is not computed.
     """
     theta_tilt, omega_pan, omega_tilt = x[1], x[2], x[3]
@@ -287,8 +279,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
 def outputs(t, x, u, p, y):
     """Write the measured signals into y.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; y [2] in
-      OUTPUT_UNITS.
+    t, x [4], u [2], p [6]; y [2] in OUTPUT_UNITS.
     y: reading_theta_pan, reading_theta_tilt.
     """
     theta_pan, theta_tilt = x[0], x[1]
@@ -300,8 +291,7 @@ def outputs(t, x, u, p, y):
 def output_jacobian(t, x, u, p, yx, yp):
     """Write the non-zero derivatives of outputs by state and parameter.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; yx [2, 4];
-      yp [2, 6].
+    t, x [4], u [2], p [6]; yx [2, 4]; yp [2, 6].
     """
     yx[0, 0] = 1.0  # reading_theta_pan_by_theta_pan
     yx[1, 1] = 1.0  # reading_theta_tilt_by_theta_tilt
@@ -311,7 +301,7 @@ def output_jacobian(t, x, u, p, yx, yp):
 def domain(p, bounds):
     """Write lower and upper bound of the state of every row of DOMAIN into bounds.
 
-    p [6] in the units of PARAMETERS; bounds [0, 2] in STATE_UNITS: lower, upper.
+    p [6]; bounds [0, 2] in STATE_UNITS: lower, upper.
     """
     return
 
@@ -320,7 +310,7 @@ def domain(p, bounds):
 def margins(p, margin):
     """Write by how much the parameters meet every row of REQUIREMENTS into margin.
 
-    p [6] in the units of PARAMETERS; margin [0] in units of what is compared.
+    p [6]; margin [0] in units of what is compared.
     """
     return
 
@@ -445,4 +435,4 @@ EFFECTS = (
      "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
      "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
 )
-# END sha256 c90541e69754575307c8259d95274ddc11f55161c170f219a8edf580643f2c36
+# END sha256 67b24e9ab7c679e222e03a185f7ec1136825fd0eca41a258d8b1279107e1d461

@@ -31,6 +31,9 @@ from ptp_symbolic.symbolic.targets.numba.mode_functions import (
 from ptp_symbolic.symbolic.targets.printing import Language
 from ptp_symbolic.symbolic.targets.target import late_inputs
 
+ARGUMENTS = """# Arguments, in SI: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS;
+# modes m as MODE_NAMES; c as `prepare` writes it. Lengths and shapes are in brackets.
+"""
 MATRICES = {
     "fx": "rows and columns as STATE_NAMES",
     "fu": "rows as STATE_NAMES, columns as INPUT_NAMES",
@@ -39,6 +42,7 @@ MATRICES = {
     "gp": "rows as g of guards, columns as PARAMETERS",
 }
 LANES = 64  # states side by side: calls cost little among so many, and the first cache holds them
+NAMED_BY_CONSTANTS = ("dx", "y", "margin")  # STATE_NAMES, OUTPUT_NAMES, REQUIREMENTS
 SEAL = "# END sha256 "
 WRITTEN_BY_PARTS = {
     "prepare": ["values = constants(p)", "for k in range(PREPARED):\n    c[k] = values[k]"],
@@ -68,6 +72,7 @@ def written(whole: Program, language: Language = DOUBLE) -> str:
             functions.append(_guard_values(kernel, words, language))
         functions.append(_function(kernel, words, language))
     functions += [mode_functions_text(whole, language), OTHER_NAMES]
+    functions[0] = ARGUMENTS + functions[0]
     body = "\n\n\n".join(functions)
     digest = hashlib.sha256(body.encode()).hexdigest()[:16]
     if _has_lanes(whole) and not language.single:
@@ -184,8 +189,11 @@ def _calls(kernel: Kernel) -> list[str]:
 
 def _table(kernel: Kernel, words: Mapping[str, str]) -> str:
     """Shapes, units and entries of the arguments of a kernel."""
-    shapes = "; ".join(_described(kernel, argument) for argument in kernel.arguments)
-    said = [f"{shapes}."]
+    read = [_described(kernel, a) for a in kernel.arguments if a not in kernel.written]
+    written = [_described(kernel, a) for a in kernel.arguments if a in kernel.written]
+    said = [f"{'; '.join([', '.join(read), *written])}."]
+    matrices = [f"{array}: {MATRICES[array]}" for array in kernel.arguments if array in MATRICES]
+    said += [f"{'; '.join(matrices)}."] if matrices else []
     for array in kernel.arguments:
         names = _entries(kernel, array, words)
         said += [f"{array}: {', '.join(names)}."] if names else []
@@ -198,10 +206,10 @@ def _table(kernel: Kernel, words: Mapping[str, str]) -> str:
 
 def _entries(kernel: Kernel, array: str, words: Mapping[str, str]) -> list[str]:
     """Names of the entries of an array that no constant of the module lists."""
-    if array in MATRICES:
-        return [MATRICES[array]]
     if array == "c" and not kernel.reads(array):
-        return list(kernel.vectors.c)
+        return ["what `constants` returns, in its order"]
+    if array in NAMED_BY_CONSTANTS:
+        return []
     if array == "x" and kernel.vectors.x[-1].startswith(GIVEN):
         given = [name for name in kernel.vectors.x if name.startswith(GIVEN)]
         return [f"STATE_NAMES, then {given[0]}", *given[1:]]
@@ -244,22 +252,13 @@ def _lane(row: int) -> str:
 
 
 def _described(kernel: Kernel, argument: str) -> str:
-    """Shape and unit of an argument of a kernel."""
+    """Shape of an argument of a kernel, and the unit of what it writes."""
     if argument == "t":
-        return "t in s"
-    vectors = kernel.vectors
-    said = {
-        "x": "in STATE_UNITS",
-        "u": "in INPUT_UNITS",
-        "p": "in the units of PARAMETERS",
-        "c": "of prepare",
-    }
-    shape = f",{UNBROKEN}".join(map(str, vectors.shape(argument)))
-    if argument == "m":
-        return f"m [{shape}], see MODE_NAMES"
-    if argument in vectors.rows:
-        return f"{argument} [{shape}] in {vectors.rows[argument][1]}"
-    return f"{argument} [{shape}] {said[argument]}" if argument in said else f"{argument} [{shape}]"
+        return "t"
+    shape = f",{UNBROKEN}".join(map(str, kernel.vectors.shape(argument)))
+    rows = kernel.vectors.rows
+    unit = f" in {rows[argument][1]}" if argument in rows else ""
+    return f"{argument}{UNBROKEN}[{shape}]{unit}"
 
 
 class NumbaModule:

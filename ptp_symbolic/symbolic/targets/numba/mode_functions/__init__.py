@@ -72,7 +72,10 @@ def _implied_modes(whole: Program, language: Language) -> Iterator[str]:
     modes, states = whole.vectors.m, whole.vectors.x
     frictions = len(whole.layout.friction_rates)
     rates = [states[k] for k in whole.layout.friction_rates]
-    slides, contacts = modes[:frictions], list(zip(modes[frictions::2], modes[frictions + 1 :: 2], strict=True))
+    slides, contacts = (
+        modes[:frictions],
+        list(zip(modes[frictions::2], modes[frictions + 1 :: 2], strict=True)),
+    )
     rigid = whole.layout.rigid_contacts or ((0, 0, 0),) * len(contacts)
     used = {*whole.layout.friction_rates, *(k for a, b, rule in rigid if rule for k in (a, b))}
 
