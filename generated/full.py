@@ -101,7 +101,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "82af00e84f81d8c4"
+MODEL_HASH = "077ed13411e1d0e2"
 NAME = "full"
 TITLE = "Both axes of the thesis, all drives"
 # How many numbers `prepare` writes.
@@ -188,8 +188,8 @@ PARAMETERS = (
 )
 
 
-# Arguments: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS, all in SI;
-# modes m as MODE_NAMES; c as `prepare` writes it. Lengths are in brackets.
+# Arguments, in SI: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS;
+# modes m as MODE_NAMES; c as `prepare` writes it. Lengths and shapes are in brackets.
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def constants(p):
     """Return what depends on the parameters alone."""
@@ -294,11 +294,10 @@ def mass_and_forces(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan, c):
         + N_tilt_lead_tilt_inverse_pi_per_length_tilt * (cos_tilt_linkage_cos_tilt
         + linkage_sin_tilt_sin_tilt))
     omega_tilt_sq = omega_tilt * omega_tilt
-    driving_torque_tilt_factor = (J_motor_tilt * omega_tilt_sq * ratio_tilt
-        * ratio_tilt_by_theta_tilt)
+    driving_torque_tilt_term = J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
     omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
-    driving_torque_tilt_factor_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
-    driving_torque_tilt = -driving_torque_tilt_factor + driving_torque_tilt_factor_2 * ratio_tilt
+    driving_torque_tilt_factor = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
+    driving_torque_tilt = driving_torque_tilt_factor * ratio_tilt - driving_torque_tilt_term
     force_pan_mass_pan_tilt = force_pan * mass_pan_tilt
     minus_gravity_torque_tilt = cos_tilt * gravity_cos_tilt + gravity_sin_tilt * sin_tilt
     load_torque_tilt_term = (-b_tilt * omega_tilt + 0.5 * coriolis * omega_pan
@@ -310,8 +309,8 @@ def mass_and_forces(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan, c):
     friction_torque_tilt = (slide_tilt * (0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt
         + lost_raising_tilt) + 0.5 * (lost_lowering_tilt
         + lost_raising_tilt) * abs(carried_tilt_slide_tilt)))
-    transmitted_torque_tilt = driving_torque_tilt_factor_2 * ratio_tilt
-    forcing_tilt = -driving_torque_tilt_factor + load_torque_tilt_term + transmitted_torque_tilt
+    transmitted_torque_tilt = driving_torque_tilt_factor * ratio_tilt
+    forcing_tilt = -driving_torque_tilt_term + load_torque_tilt_term + transmitted_torque_tilt
     force_tilt = forcing_tilt - friction_torque_tilt
     mass_tilt = J_motor_tilt_ratio_tilt_sq + inertia_tilt
     coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
@@ -339,11 +338,7 @@ def prepare(p, c):
     """Write into c what prepared_derivative takes from the parameters alone.
 
     p [44]; c [19].
-    c: inertia_pan_sin_cos_tilt, inertia_pan_sin_sq_tilt, coupling_cos_tilt, coupling_sin_tilt,
-      half_gap_pan, inertia_tilt, inertia_pan, lead_tilt_inverse, lowered_tilt,
-      l_ground_tilt_sq_plus_r_arm_tilt_sq, linkage_cos_tilt, linkage_sin_tilt, raised_tilt,
-      gravity_cos_tilt, gravity_sin_tilt, mass_gear_pan, inverse_mass_gear_pan, K_t_pan_N_pan,
-      raised_tilt_minus_lowered_tilt.
+    c: what `constants` returns, in its order.
     """
     values = constants(p)
     for k in range(PREPARED):
@@ -355,8 +350,6 @@ def prepared_derivative(t, x, u, p, m, c, dx):
     """Write the time derivative of the state into dx in the modes m, c being prepared.
 
     t, x [8], u [2], p [44], m [4], c [19]; dx [8] in STATE_UNITS per s.
-    dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt, rate_of_theta_gear_pan,
-      accel_gear_pan, rate_of_i_pan, rate_of_i_tilt.
     """
     slide_pan, slide_tilt, side_pan, active_pan = m[0], m[1], m[2], m[3]
     forces = mass_and_forces(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan, c)
@@ -386,8 +379,6 @@ def mode_derivative(t, x, u, p, m, dx):
     """Write the time derivative of the state into dx in the modes m.
 
     t, x [8], u [2], p [44], m [4]; dx [8] in STATE_UNITS per s.
-    dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt, rate_of_theta_gear_pan,
-      accel_gear_pan, rate_of_i_pan, rate_of_i_tilt.
     """
     prepared_derivative(t, x, u, p, m, constants(p), dx)
 
@@ -414,11 +405,10 @@ def guard_values(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan):
     forward_pan = F_s_pan * (a_F_s_pan + 1.0)
     backward_pan = F_s_pan * (1.0 - a_F_s_pan)
     holding_tilt = -accel_pan * mass_pan_tilt + forcing_tilt
-    forward_tilt_factor = 0.5 * load_torque_tilt * (lowered_tilt + raised_tilt - 2.0)
+    forward_tilt_term = 0.5 * load_torque_tilt * (lowered_tilt + raised_tilt - 2.0)
     abs_load_torque_tilt = abs(load_torque_tilt)
-    forward_tilt = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt - forward_tilt_factor
-    backward_tilt = (0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt
-        + forward_tilt_factor)
+    forward_tilt = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt - forward_tilt_term
+    backward_tilt = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt + forward_tilt_term
     separation_pan = -theta_pan_minus_theta_gear_pan
     upper_pan = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (-half_gap_pan
         - theta_pan_minus_theta_gear_pan))
@@ -634,9 +624,9 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     lowered_tilt = -d_screw_tilt_pi_lead_tilt_inverse * lowered_tilt_factor_2
     one_minus_lowered_tilt = 1.0 - lowered_tilt
     load_inertia_tilt = inertia_tilt - mass_pan_inverse * mass_pan_tilt_sq
-    lost_lowering_tilt_term = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt
-    abs_lost_lowering_tilt_term_inverse = 1.0 / abs(lost_lowering_tilt_term)
-    lost_lowering_tilt = abs_lost_lowering_tilt_term_inverse * one_minus_lowered_tilt
+    lost_lowering_tilt_denominator = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt
+    abs_lost_lowering_tilt_denominator_inverse = 1.0 / abs(lost_lowering_tilt_denominator)
+    lost_lowering_tilt = abs_lost_lowering_tilt_denominator_inverse * one_minus_lowered_tilt
     d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt = d_screw_tilt_pi - f_screw_tilt_lead_tilt
     raised_tilt_factor = 1.0 / d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt
     d_screw_tilt_pi_f_screw_tilt_plus_lead_tilt = d_screw_tilt_pi_f_screw_tilt + lead_tilt
@@ -731,10 +721,10 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     coriolis_by_theta_tilt = (coriolis_by_inertia_pan_per_sin_tilt
         * inertia_pan_per_sin_tilt_by_theta_tilt - inertia_pan_per_sin_tilt_sin_tilt
         * twice_omega_pan)
-    accel_pan_by_theta_tilt_factor = (coriolis_by_theta_tilt * omega_tilt
+    accel_pan_by_theta_tilt_term = (coriolis_by_theta_tilt * omega_tilt
         - mass_pan_tilt * omega_tilt_sq)
     balance_pan_by_theta_tilt = (-accel_pan * (cos_tilt_inertia_pan_per_sin_tilt
-        + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt) - accel_pan_by_theta_tilt_factor
+        + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt) - accel_pan_by_theta_tilt_term
         - accel_tilt * follower_coupling_tilt_by_theta_tilt)
     length_tilt_inverse_cubed = 1.0 / (length_tilt * length_tilt * length_tilt)
     quarter_length_tilt_inverse_cubed = 0.25 * length_tilt_inverse_cubed
@@ -742,15 +732,15 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * ratio_tilt_by_theta_tilt_factor - quarter_length_tilt_inverse_cubed
         * (ratio_tilt_by_N_tilt_factor * ratio_tilt_by_N_tilt_factor))
     N_tilt_ratio_tilt_by_theta_tilt_factor = N_tilt * ratio_tilt_by_theta_tilt_factor
-    ratio_tilt_by_theta_tilt_by_theta_tilt_factor = (N_tilt_ratio_tilt_by_theta_tilt_factor
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term = (N_tilt_ratio_tilt_by_theta_tilt_factor
         * lead_tilt_inverse_pi_length_tilt_inverse_sq)
     ratio_tilt_by_length_tilt = -N_tilt * ratio_tilt_by_theta_tilt_factor_3
     ratio_tilt_by_theta_tilt_by_length_tilt = (2.0 * math.pi * N_tilt * lead_tilt_inverse
         * length_tilt_by_theta_tilt * length_tilt_inverse_cubed * ratio_tilt_by_N_tilt_factor
-        - ratio_tilt_by_theta_tilt_by_theta_tilt_factor)
+        - ratio_tilt_by_theta_tilt_by_theta_tilt_term)
     ratio_tilt_by_theta_tilt_by_theta_tilt = (length_tilt_by_theta_tilt
         * ratio_tilt_by_theta_tilt_by_length_tilt - length_tilt_by_theta_tilt
-        * ratio_tilt_by_theta_tilt_by_theta_tilt_factor + length_tilt_by_theta_tilt_by_theta_tilt
+        * ratio_tilt_by_theta_tilt_by_theta_tilt_term + length_tilt_by_theta_tilt_by_theta_tilt
         * ratio_tilt_by_length_tilt - ratio_tilt)
     force_tilt_by_ratio_tilt = (-J_motor_tilt * omega_tilt_sq_ratio_tilt_by_theta_tilt
         + K_t_tilt * i_tilt - 2.0 * b_motor_tilt_omega_tilt_ratio_tilt)
@@ -772,10 +762,10 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + cos_tilt * gravity_sin_tilt - gravity_cos_tilt_sin_tilt)
     load_torque_tilt_by_follower_coupling_tilt = -force_pan * mass_pan_inverse
     load_torque_tilt_by_follower_inertia_tilt = force_pan * mass_pan_inverse_sq * mass_pan_tilt
-    load_torque_tilt_by_theta_tilt = (accel_pan_by_theta_tilt_factor
-        * mass_pan_inverse_mass_pan_tilt + follower_coupling_tilt_by_theta_tilt
-        * load_torque_tilt_by_follower_coupling_tilt + follower_inertia_tilt_by_theta_tilt
-        * load_torque_tilt_by_follower_inertia_tilt + load_torque_tilt_by_theta_tilt_term)
+    load_torque_tilt_by_theta_tilt = (accel_pan_by_theta_tilt_term * mass_pan_inverse_mass_pan_tilt
+        + follower_coupling_tilt_by_theta_tilt * load_torque_tilt_by_follower_coupling_tilt
+        + follower_inertia_tilt_by_theta_tilt * load_torque_tilt_by_follower_inertia_tilt
+        + load_torque_tilt_by_theta_tilt_term)
     twice_J_motor_tilt_ratio_tilt = 2.0 * J_motor_tilt_ratio_tilt
     carried_tilt_by_ratio_tilt = -load_torque_tilt * twice_J_motor_tilt_ratio_tilt
     carried_tilt_by_theta_tilt = (-J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_tilt
@@ -783,8 +773,9 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + driving_torque_tilt * load_inertia_tilt_by_theta_tilt
         + driving_torque_tilt_by_theta_tilt * load_inertia_tilt)
     lost_lowering_tilt_by_theta_tilt_factor = (one_minus_lowered_tilt * (0.0
-        if lost_lowering_tilt_term == 0.0 else math.copysign(1.0, lost_lowering_tilt_term))
-        / (lost_lowering_tilt_term * lost_lowering_tilt_term))
+        if lost_lowering_tilt_denominator == 0.0
+        else math.copysign(1.0, lost_lowering_tilt_denominator)) / (lost_lowering_tilt_denominator
+        * lost_lowering_tilt_denominator))
     lost_lowering_tilt_by_load_inertia_tilt = (-lost_lowering_tilt_by_theta_tilt_factor
         * lowered_tilt)
     lost_lowering_tilt_by_ratio_tilt = (-lost_lowering_tilt_by_theta_tilt_factor
@@ -801,13 +792,13 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * lost_raising_tilt_by_load_inertia_tilt + lost_raising_tilt_by_ratio_tilt
         * ratio_tilt_by_theta_tilt)
     accel_tilt_twice_J_motor_tilt_ratio_tilt = accel_tilt * twice_J_motor_tilt_ratio_tilt
-    accel_pan_by_theta_tilt_factor_2 = accel_pan * follower_coupling_tilt_by_theta_tilt
+    accel_pan_by_theta_tilt_term_2 = accel_pan * follower_coupling_tilt_by_theta_tilt
     half_carried_tilt_slide_tilt = 0.5 * carried_tilt_slide_tilt
     force_tilt_by_lost_lowering_tilt = (-slide_tilt * (0.5 * abs_carried_tilt_slide_tilt
         - half_carried_tilt_slide_tilt))
     force_tilt_by_lost_raising_tilt = (-slide_tilt * (half_abs_carried_tilt_slide_tilt
         + half_carried_tilt_slide_tilt))
-    balance_tilt_by_theta_tilt = (-accel_pan_by_theta_tilt_factor_2
+    balance_tilt_by_theta_tilt = (-accel_pan_by_theta_tilt_term_2
         - accel_tilt_twice_J_motor_tilt_ratio_tilt * ratio_tilt_by_theta_tilt
         + carried_tilt_by_theta_tilt * force_tilt_by_carried_tilt
         + driving_torque_tilt_by_theta_tilt
@@ -937,16 +928,16 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * mass_pan_tilt_slide_tilt_sq + balance_tilt_by_inertia_pan * mass_pan))
     fp[3, 0] = accel_tilt_by_inertia_pan  # accel_tilt_by_J_pan
     coriolis_by_inertia_pan_sin_sq_tilt = coriolis_by_inertia_pan_per_sin_tilt * sin_tilt
-    accel_pan_by_inertia_pan_sin_sq_tilt_factor = coriolis_by_inertia_pan_sin_sq_tilt * omega_tilt
+    accel_pan_by_inertia_pan_sin_sq_tilt_term = coriolis_by_inertia_pan_sin_sq_tilt * omega_tilt
     accel_pan_sin_tilt = accel_pan * sin_tilt
-    balance_pan_by_inertia_pan_sin_sq_tilt = (-accel_pan_by_inertia_pan_sin_sq_tilt_factor
+    balance_pan_by_inertia_pan_sin_sq_tilt = (-accel_pan_by_inertia_pan_sin_sq_tilt_term
         - accel_pan_sin_tilt * sin_tilt)
     follower_inertia_tilt_by_inertia_pan_sin_sq_tilt = sin_tilt * sin_tilt
     load_inertia_tilt_by_inertia_pan_sin_sq_tilt = (follower_inertia_tilt_by_inertia_pan_sin_sq_tilt
         * load_inertia_tilt_by_follower_inertia_tilt)
     load_torque_tilt_by_inertia_pan_sin_sq_tilt_term = (coriolis_by_inertia_pan_sin_sq_tilt
         * force_tilt_by_coriolis)
-    load_torque_tilt_by_inertia_pan_sin_sq_tilt = (accel_pan_by_inertia_pan_sin_sq_tilt_factor
+    load_torque_tilt_by_inertia_pan_sin_sq_tilt = (accel_pan_by_inertia_pan_sin_sq_tilt_term
         * mass_pan_inverse_mass_pan_tilt + follower_inertia_tilt_by_inertia_pan_sin_sq_tilt
         * load_torque_tilt_by_follower_inertia_tilt
         + load_torque_tilt_by_inertia_pan_sin_sq_tilt_term)
@@ -1030,8 +1021,8 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     accel_pan_by_gravity_sin_tilt = -accel_pan_by_i_tilt_factor * balance_tilt_by_gravity_sin_tilt
     coriolis_by_inertia_pan_sin_cos_tilt = (coriolis_by_inertia_pan_per_sin_tilt * cos_tilt
         - omega_pan)
-    accel_pan_by_inertia_pan_sin_cos_tilt_factor = coriolis_by_inertia_pan_sin_cos_tilt * omega_tilt
-    balance_pan_by_inertia_pan_sin_cos_tilt = (-accel_pan_by_inertia_pan_sin_cos_tilt_factor
+    accel_pan_by_inertia_pan_sin_cos_tilt_term = coriolis_by_inertia_pan_sin_cos_tilt * omega_tilt
+    balance_pan_by_inertia_pan_sin_cos_tilt = (-accel_pan_by_inertia_pan_sin_cos_tilt_term
         - accel_pan_sin_tilt * cos_tilt)
     follower_inertia_tilt_by_inertia_pan_sin_cos_tilt = cos_tilt * sin_tilt
     load_inertia_tilt_by_inertia_pan_sin_cos_tilt = (
@@ -1039,7 +1030,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * load_inertia_tilt_by_follower_inertia_tilt)
     load_torque_tilt_by_inertia_pan_sin_cos_tilt_term = (coriolis_by_inertia_pan_sin_cos_tilt
         * force_tilt_by_coriolis)
-    load_torque_tilt_by_inertia_pan_sin_cos_tilt = (accel_pan_by_inertia_pan_sin_cos_tilt_factor
+    load_torque_tilt_by_inertia_pan_sin_cos_tilt = (accel_pan_by_inertia_pan_sin_cos_tilt_term
         * mass_pan_inverse_mass_pan_tilt + follower_inertia_tilt_by_inertia_pan_sin_cos_tilt
         * load_torque_tilt_by_follower_inertia_tilt
         + load_torque_tilt_by_inertia_pan_sin_cos_tilt_term)
@@ -1278,7 +1269,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     fp[3, 34] = balance_tilt_by_N_tilt * inverse_determinant_slide_tilt_sq_mass_pan
     # rate_of_i_tilt_by_N_tilt
     fp[7, 34] = -K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_N_tilt
-    lost_lowering_tilt_by_lowered_tilt = (-abs_lost_lowering_tilt_term_inverse
+    lost_lowering_tilt_by_lowered_tilt = (-abs_lost_lowering_tilt_denominator_inverse
         - load_inertia_tilt * lost_lowering_tilt_by_theta_tilt_factor)
     balance_tilt_by_lowered_tilt = (force_tilt_by_lost_lowering_tilt
         * lost_lowering_tilt_by_lowered_tilt)
@@ -1525,13 +1516,13 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     gx[3, 0] = accel_pan_by_theta_gear_pan * mass_pan_tilt  # holding_tilt_by_theta_pan
     sign_load_torque_tilt = 0.0 if load_torque_tilt == 0.0 else math.copysign(1.0, load_torque_tilt)
     raised_tilt_minus_lowered_tilt = -lowered_tilt + raised_tilt
-    forward_tilt_by_theta_pan_factor = 0.5 * lowered_tilt + 0.5 * raised_tilt - 1.0
-    forward_tilt_by_theta_pan_factor_2 = (-forward_tilt_by_theta_pan_factor
+    forward_tilt_by_theta_pan_term = 0.5 * lowered_tilt + 0.5 * raised_tilt - 1.0
+    forward_tilt_by_theta_pan_factor = (-forward_tilt_by_theta_pan_term
         + 0.5 * raised_tilt_minus_lowered_tilt * sign_load_torque_tilt)
-    forward_tilt_by_theta_gear_pan = (forward_tilt_by_theta_pan_factor_2
+    forward_tilt_by_theta_gear_pan = (forward_tilt_by_theta_pan_factor
         * load_torque_tilt_by_theta_gear_pan)
     gx[4, 0] = -forward_tilt_by_theta_gear_pan  # forward_tilt_by_theta_pan
-    backward_tilt_by_theta_pan_factor = (forward_tilt_by_theta_pan_factor
+    backward_tilt_by_theta_pan_factor = (forward_tilt_by_theta_pan_term
         + 0.5 * raised_tilt_minus_lowered_tilt * sign_load_torque_tilt)
     backward_tilt_by_theta_gear_pan = (backward_tilt_by_theta_pan_factor
         * load_torque_tilt_by_theta_gear_pan)
@@ -1541,11 +1532,11 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     gx[9, 0] = -k_shaft_pan  # lower_pan_by_theta_pan
     # holding_tilt_by_theta_tilt
     gx[3, 1] = (-J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_theta_tilt
-        - accel_pan_by_theta_tilt * mass_pan_tilt - accel_pan_by_theta_tilt_factor_2
+        - accel_pan_by_theta_tilt * mass_pan_tilt - accel_pan_by_theta_tilt_term_2
         + 0.5 * coriolis_by_theta_tilt * omega_pan + cos_tilt * gravity_sin_tilt
         + force_tilt_by_ratio_tilt * ratio_tilt_by_theta_tilt - gravity_cos_tilt_sin_tilt)
     # forward_tilt_by_theta_tilt
-    gx[4, 1] = forward_tilt_by_theta_pan_factor_2 * load_torque_tilt_by_theta_tilt
+    gx[4, 1] = forward_tilt_by_theta_pan_factor * load_torque_tilt_by_theta_tilt
     # backward_tilt_by_theta_tilt
     gx[5, 1] = backward_tilt_by_theta_pan_factor * load_torque_tilt_by_theta_tilt
     gx[0, 2] = follower_torque_tilt_by_omega_gear_pan  # holding_pan_by_omega_pan
@@ -1553,7 +1544,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     gx[3, 2] = (-accel_pan_by_omega_pan * mass_pan_tilt
         + coriolis_by_omega_pan * force_tilt_by_coriolis + half_coriolis)
     # forward_tilt_by_omega_pan
-    gx[4, 2] = forward_tilt_by_theta_pan_factor_2 * load_torque_tilt_by_omega_pan
+    gx[4, 2] = forward_tilt_by_theta_pan_factor * load_torque_tilt_by_omega_pan
     # backward_tilt_by_omega_pan
     gx[5, 2] = backward_tilt_by_theta_pan_factor * load_torque_tilt_by_omega_pan
     gx[8, 2] = -d_shaft_pan  # upper_pan_by_omega_pan
@@ -1561,7 +1552,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     gx[3, 3] = (-accel_pan_by_omega_tilt * mass_pan_tilt
         - b_tilt_plus_carried_tilt_by_omega_tilt_factor)  # holding_tilt_by_omega_tilt
     # forward_tilt_by_omega_tilt
-    gx[4, 3] = forward_tilt_by_theta_pan_factor_2 * load_torque_tilt_by_omega_tilt
+    gx[4, 3] = forward_tilt_by_theta_pan_factor * load_torque_tilt_by_omega_tilt
     # backward_tilt_by_omega_tilt
     gx[5, 3] = backward_tilt_by_theta_pan_factor * load_torque_tilt_by_omega_tilt
     gx[0, 4] = -holding_pan_by_theta_pan  # holding_pan_by_theta_gear_pan
@@ -1574,7 +1565,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     gx[0, 5] = -follower_torque_tilt_by_omega_gear_pan  # holding_pan_by_omega_gear_pan
     gx[3, 5] = -accel_pan_by_omega_gear_pan * mass_pan_tilt  # holding_tilt_by_omega_gear_pan
     # forward_tilt_by_omega_gear_pan
-    gx[4, 5] = forward_tilt_by_theta_pan_factor_2 * load_torque_tilt_by_omega_gear_pan
+    gx[4, 5] = forward_tilt_by_theta_pan_factor * load_torque_tilt_by_omega_gear_pan
     # backward_tilt_by_omega_gear_pan
     gx[5, 5] = backward_tilt_by_theta_pan_factor * load_torque_tilt_by_omega_gear_pan
     gx[8, 5] = d_shaft_pan  # upper_pan_by_omega_gear_pan
@@ -1583,7 +1574,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     # holding_tilt_by_i_tilt
     gx[3, 7] = -accel_pan_by_i_tilt * mass_pan_tilt + driving_torque_tilt_by_i_tilt
     gp[3, 0] = -accel_pan_by_inertia_pan * mass_pan_tilt  # holding_tilt_by_J_pan
-    forward_tilt_by_J_pan = (forward_tilt_by_theta_pan_factor_2
+    forward_tilt_by_J_pan = (forward_tilt_by_theta_pan_factor
         * load_torque_tilt_by_follower_inertia_tilt)
     gp[4, 0] = forward_tilt_by_J_pan
     backward_tilt_by_J_pan = (backward_tilt_by_theta_pan_factor
@@ -1592,7 +1583,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     holding_tilt_by_J_x_tilt = (-accel_pan_by_inertia_pan_sin_sq_tilt * mass_pan_tilt
         + load_torque_tilt_by_inertia_pan_sin_sq_tilt_term)
     gp[3, 1] = holding_tilt_by_J_x_tilt
-    forward_tilt_by_J_x_tilt = (forward_tilt_by_theta_pan_factor_2
+    forward_tilt_by_J_x_tilt = (forward_tilt_by_theta_pan_factor
         * load_torque_tilt_by_inertia_pan_sin_sq_tilt)
     gp[4, 1] = forward_tilt_by_J_x_tilt
     backward_tilt_by_J_x_tilt = (backward_tilt_by_theta_pan_factor
@@ -1604,7 +1595,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         - load_torque_tilt_by_inertia_pan_sin_sq_tilt_term)
     gp[3, 3] = holding_tilt_by_J_z_tilt
     forward_tilt_by_J_z_tilt = (-forward_tilt_by_J_x_tilt
-        + forward_tilt_by_theta_pan_factor_2 * load_torque_tilt_by_follower_inertia_tilt)
+        + forward_tilt_by_theta_pan_factor * load_torque_tilt_by_follower_inertia_tilt)
     gp[4, 3] = forward_tilt_by_J_z_tilt
     backward_tilt_by_J_z_tilt = (-backward_tilt_by_J_x_tilt
         + backward_tilt_by_theta_pan_factor * load_torque_tilt_by_follower_inertia_tilt)
@@ -1624,13 +1615,13 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     forward_tilt_by_m_payload_factor_3 = (inertia_pan_sin_cos_tilt_by_m_payload
         * load_torque_tilt_by_inertia_pan_sin_cos_tilt)
     # forward_tilt_by_m_payload
-    gp[4, 4] = (cos_tilt_gravity_cos_tilt_by_m_payload * forward_tilt_by_theta_pan_factor_2
+    gp[4, 4] = (cos_tilt_gravity_cos_tilt_by_m_payload * forward_tilt_by_theta_pan_factor
         + forward_tilt_by_J_pan * inertia_pan_by_m_payload
         + forward_tilt_by_J_x_tilt * inertia_pan_sin_sq_tilt_by_m_payload
-        + forward_tilt_by_m_payload_factor * forward_tilt_by_theta_pan_factor_2
-        + forward_tilt_by_m_payload_factor_2 * forward_tilt_by_theta_pan_factor_2
-        + forward_tilt_by_m_payload_factor_3 * forward_tilt_by_theta_pan_factor_2
-        + forward_tilt_by_theta_pan_factor_2 * gravity_sin_tilt_by_m_payload_sin_tilt)
+        + forward_tilt_by_m_payload_factor * forward_tilt_by_theta_pan_factor
+        + forward_tilt_by_m_payload_factor_2 * forward_tilt_by_theta_pan_factor
+        + forward_tilt_by_m_payload_factor_3 * forward_tilt_by_theta_pan_factor
+        + forward_tilt_by_theta_pan_factor * gravity_sin_tilt_by_m_payload_sin_tilt)
     # backward_tilt_by_m_payload
     gp[5, 4] = (backward_tilt_by_J_pan * inertia_pan_by_m_payload
         + backward_tilt_by_J_x_tilt * inertia_pan_sin_sq_tilt_by_m_payload
@@ -1658,11 +1649,11 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     forward_tilt_by_c_x_payload_factor_2 = (inertia_tilt_by_c_z_payload
         * load_torque_tilt_by_inertia_pan_sin_cos_tilt)
     # forward_tilt_by_c_x_payload
-    gp[4, 8] = (cos_tilt_gravity_cos_tilt_by_c_x_payload * forward_tilt_by_theta_pan_factor_2
+    gp[4, 8] = (cos_tilt_gravity_cos_tilt_by_c_x_payload * forward_tilt_by_theta_pan_factor
         + forward_tilt_by_J_pan * inertia_pan_by_c_x_payload
         - forward_tilt_by_J_x_tilt * inertia_pan_by_c_x_payload
-        + forward_tilt_by_c_x_payload_factor * forward_tilt_by_theta_pan_factor_2
-        + forward_tilt_by_c_x_payload_factor_2 * forward_tilt_by_theta_pan_factor_2)
+        + forward_tilt_by_c_x_payload_factor * forward_tilt_by_theta_pan_factor
+        + forward_tilt_by_c_x_payload_factor_2 * forward_tilt_by_theta_pan_factor)
     # backward_tilt_by_c_x_payload
     gp[5, 8] = (backward_tilt_by_J_pan * inertia_pan_by_c_x_payload
         - backward_tilt_by_J_x_tilt * inertia_pan_by_c_x_payload
@@ -1678,8 +1669,8 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * load_torque_tilt_by_coupling_cos_tilt)
     # forward_tilt_by_c_y_payload
     gp[4, 9] = (forward_tilt_by_J_pan * inertia_pan_by_c_y_payload
-        + forward_tilt_by_c_y_payload_factor * forward_tilt_by_theta_pan_factor_2
-        + forward_tilt_by_c_y_payload_factor_2 * forward_tilt_by_theta_pan_factor_2)
+        + forward_tilt_by_c_y_payload_factor * forward_tilt_by_theta_pan_factor
+        + forward_tilt_by_c_y_payload_factor_2 * forward_tilt_by_theta_pan_factor)
     # backward_tilt_by_c_y_payload
     gp[5, 9] = (backward_tilt_by_J_pan * inertia_pan_by_c_y_payload
         + backward_tilt_by_theta_pan_factor * forward_tilt_by_c_y_payload_factor
@@ -1697,9 +1688,9 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * load_torque_tilt_by_inertia_pan_sin_cos_tilt)
     # forward_tilt_by_c_z_payload
     gp[4, 10] = (forward_tilt_by_J_x_tilt * inertia_tilt_by_c_z_payload
-        + forward_tilt_by_c_z_payload_factor * forward_tilt_by_theta_pan_factor_2
-        + forward_tilt_by_c_z_payload_factor_2 * forward_tilt_by_theta_pan_factor_2
-        + forward_tilt_by_theta_pan_factor_2 * gravity_cos_tilt_by_c_x_payload_sin_tilt)
+        + forward_tilt_by_c_z_payload_factor * forward_tilt_by_theta_pan_factor
+        + forward_tilt_by_c_z_payload_factor_2 * forward_tilt_by_theta_pan_factor
+        + forward_tilt_by_theta_pan_factor * gravity_cos_tilt_by_c_x_payload_sin_tilt)
     # backward_tilt_by_c_z_payload
     gp[5, 10] = (backward_tilt_by_J_x_tilt * inertia_tilt_by_c_z_payload
         + backward_tilt_by_theta_pan_factor * forward_tilt_by_c_z_payload_factor
@@ -1707,11 +1698,11 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + backward_tilt_by_theta_pan_factor * gravity_cos_tilt_by_c_x_payload_sin_tilt)
     gp[3, 11] = -accel_pan_by_b_pan * mass_pan_tilt  # holding_tilt_by_b_pan
     # forward_tilt_by_b_pan
-    gp[4, 11] = forward_tilt_by_theta_pan_factor_2 * load_torque_tilt_by_b_pan
+    gp[4, 11] = forward_tilt_by_theta_pan_factor * load_torque_tilt_by_b_pan
     # backward_tilt_by_b_pan
     gp[5, 11] = backward_tilt_by_theta_pan_factor * load_torque_tilt_by_b_pan
     gp[3, 12] = -accel_pan_by_b_tilt * mass_pan_tilt - omega_tilt  # holding_tilt_by_b_tilt
-    gp[4, 12] = -forward_tilt_by_theta_pan_factor_2 * omega_tilt  # forward_tilt_by_b_tilt
+    gp[4, 12] = -forward_tilt_by_theta_pan_factor * omega_tilt  # forward_tilt_by_b_tilt
     gp[5, 12] = -backward_tilt_by_theta_pan_factor * omega_tilt  # backward_tilt_by_b_tilt
     gp[1, 14] = a_F_s_pan + 1.0  # forward_pan_by_F_s_pan
     gp[2, 14] = 1.0 - a_F_s_pan  # backward_pan_by_F_s_pan
@@ -1720,7 +1711,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     gp[0, 21] = balance_gear_pan_by_gap_pan  # holding_pan_by_gap_pan
     gp[3, 21] = -accel_pan_by_gap_pan * mass_pan_tilt  # holding_tilt_by_gap_pan
     # forward_tilt_by_gap_pan
-    gp[4, 21] = forward_tilt_by_theta_pan_factor_2 * load_torque_tilt_by_gap_pan
+    gp[4, 21] = forward_tilt_by_theta_pan_factor * load_torque_tilt_by_gap_pan
     # backward_tilt_by_gap_pan
     gp[5, 21] = backward_tilt_by_theta_pan_factor * load_torque_tilt_by_gap_pan
     gp[7, 21] = 0.5  # half_gap_pan_by_gap_pan
@@ -1730,7 +1721,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     gp[0, 22] = balance_gear_pan_by_k_shaft_pan  # holding_pan_by_k_shaft_pan
     gp[3, 22] = -accel_pan_by_k_shaft_pan * mass_pan_tilt  # holding_tilt_by_k_shaft_pan
     # forward_tilt_by_k_shaft_pan
-    gp[4, 22] = forward_tilt_by_theta_pan_factor_2 * load_torque_tilt_by_k_shaft_pan
+    gp[4, 22] = forward_tilt_by_theta_pan_factor * load_torque_tilt_by_k_shaft_pan
     # backward_tilt_by_k_shaft_pan
     gp[5, 22] = backward_tilt_by_theta_pan_factor * load_torque_tilt_by_k_shaft_pan
     gp[8, 22] = -half_gap_pan - theta_pan_minus_theta_gear_pan  # upper_pan_by_k_shaft_pan
@@ -1738,7 +1729,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     gp[0, 23] = balance_gear_pan_by_d_shaft_pan  # holding_pan_by_d_shaft_pan
     gp[3, 23] = -accel_pan_by_d_shaft_pan * mass_pan_tilt  # holding_tilt_by_d_shaft_pan
     # forward_tilt_by_d_shaft_pan
-    gp[4, 23] = forward_tilt_by_theta_pan_factor_2 * load_torque_tilt_by_d_shaft_pan
+    gp[4, 23] = forward_tilt_by_theta_pan_factor * load_torque_tilt_by_d_shaft_pan
     # backward_tilt_by_d_shaft_pan
     gp[5, 23] = backward_tilt_by_theta_pan_factor * load_torque_tilt_by_d_shaft_pan
     gp[8, 23] = upper_pan_by_d_shaft_pan
@@ -1801,8 +1792,8 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     cos_tilt_gravity_cos_tilt_by_gravity = cos_tilt * gravity_cos_tilt_by_gravity
     gravity_sin_tilt_by_gravity_sin_tilt = gravity_sin_tilt_by_gravity * sin_tilt
     # forward_tilt_by_gravity
-    gp[4, 43] = (cos_tilt_gravity_cos_tilt_by_gravity * forward_tilt_by_theta_pan_factor_2
-        + forward_tilt_by_theta_pan_factor_2 * gravity_sin_tilt_by_gravity_sin_tilt)
+    gp[4, 43] = (cos_tilt_gravity_cos_tilt_by_gravity * forward_tilt_by_theta_pan_factor
+        + forward_tilt_by_theta_pan_factor * gravity_sin_tilt_by_gravity_sin_tilt)
     # backward_tilt_by_gravity
     gp[5, 43] = (backward_tilt_by_theta_pan_factor * cos_tilt_gravity_cos_tilt_by_gravity
         + backward_tilt_by_theta_pan_factor * gravity_sin_tilt_by_gravity_sin_tilt)
@@ -1813,7 +1804,6 @@ def outputs(t, x, u, p, y):
     """Write the measured signals into y.
 
     t, x [8], u [2], p [44]; y [4] in OUTPUT_UNITS.
-    y: reading_theta_pan, reading_theta_tilt, reading_i_pan, reading_i_tilt.
     """
     theta_pan, theta_tilt, i_pan, i_tilt = x[0], x[1], x[6], x[7]
     y[0] = theta_pan  # reading_theta_pan
@@ -1865,7 +1855,6 @@ def margins(p, margin):
     """Write by how much the parameters meet every row of REQUIREMENTS into margin.
 
     p [44]; margin [4] in units of what is compared.
-    margin: requirement_0, requirement_1, requirement_2, requirement_3.
     """
     F_c_pan, F_s_pan, lead_tilt, d_screw_tilt, f_screw_tilt = p[13], p[14], p[35], p[36], p[37]
     l_ground_tilt, l_min_tilt, r_arm_tilt, s_start_tilt = p[38], p[39], p[40], p[41]
@@ -2006,4 +1995,4 @@ EFFECTS = (
      "linear actuator with lead screw and linkage",
      "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6", "", False),
 )
-# END sha256 76a99f44741d00fbb15df2bc78fcb3c95e4060492a010cdc2eddc19e89ed9549
+# END sha256 e2576e5d223d32c37986fc97781de60f7c2cca412775473c4dda6fa74c930aaf

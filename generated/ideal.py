@@ -28,7 +28,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "9ab41b3b47c56600"
+MODEL_HASH = "ed093a152caf5434"
 NAME = "ideal"
 TITLE = "Balanced pan-tilt platform of the thesis"
 # How many numbers `prepare` writes.
@@ -67,8 +67,8 @@ PARAMETERS = (
 )
 
 
-# Arguments: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS, all in SI;
-# modes m as MODE_NAMES; c as `prepare` writes it. Lengths are in brackets.
+# Arguments, in SI: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS;
+# modes m as MODE_NAMES; c as `prepare` writes it. Lengths and shapes are in brackets.
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def constants(p):
     """Return what depends on the parameters alone."""
@@ -101,7 +101,7 @@ def prepare(p, c):
     """Write into c what prepared_derivative takes from the parameters alone.
 
     p [6]; c [3].
-    c: inertia_pan_sin_sq_tilt, inertia_pan, inverse_mass_tilt.
+    c: what `constants` returns, in its order.
     """
     values = constants(p)
     for k in range(PREPARED):
@@ -113,7 +113,6 @@ def prepared_derivative(t, x, u, p, m, c, dx):
     """Write the time derivative of the state into dx in the modes m, c being prepared.
 
     t, x [4], u [2], p [6], m [0], c [3]; dx [4] in STATE_UNITS per s.
-    dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt.
     """
     forces = mass_and_forces(t, x, u, p, c)
     force_pan, mass_pan, force_tilt = forces[0], forces[1], forces[2]
@@ -131,7 +130,6 @@ def mode_derivative(t, x, u, p, m, dx):
     """Write the time derivative of the state into dx in the modes m.
 
     t, x [4], u [2], p [6], m [0]; dx [4] in STATE_UNITS per s.
-    dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt.
     """
     prepared_derivative(t, x, u, p, m, constants(p), dx)
 
@@ -280,7 +278,6 @@ def outputs(t, x, u, p, y):
     """Write the measured signals into y.
 
     t, x [4], u [2], p [6]; y [2] in OUTPUT_UNITS.
-    y: reading_theta_pan, reading_theta_tilt.
     """
     theta_pan, theta_tilt = x[0], x[1]
     y[0] = theta_pan  # reading_theta_pan
@@ -435,4 +432,4 @@ EFFECTS = (
      "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
      "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
 )
-# END sha256 67b24e9ab7c679e222e03a185f7ec1136825fd0eca41a258d8b1279107e1d461
+# END sha256 b15c21a2b090cdb17ce95af1ccebecf32fd23f64f92f264174c1d61ec02a1a28

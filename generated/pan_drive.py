@@ -32,7 +32,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "db9c3bf8dd02adce"
+MODEL_HASH = "2708a5dc58b9ea67"
 NAME = "pan_drive"
 TITLE = "Pan drive of the thesis"
 # How many numbers `prepare` writes.
@@ -87,8 +87,8 @@ PARAMETERS = (
 )
 
 
-# Arguments: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS, all in SI;
-# modes m as MODE_NAMES; c as `prepare` writes it. Lengths are in brackets.
+# Arguments, in SI: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS;
+# modes m as MODE_NAMES; c as `prepare` writes it. Lengths and shapes are in brackets.
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def constants(p):
     """Return what depends on the parameters alone."""
@@ -139,7 +139,7 @@ def prepare(p, c):
     """Write into c what prepared_derivative takes from the parameters alone.
 
     p [18]; c [5].
-    c: half_gap_pan, inverse_mass_pan, mass_gear_pan, inverse_mass_gear_pan, K_t_pan_N_pan.
+    c: what `constants` returns, in its order.
     """
     values = constants(p)
     for k in range(PREPARED):
@@ -151,7 +151,6 @@ def prepared_derivative(t, x, u, p, m, c, dx):
     """Write the time derivative of the state into dx in the modes m, c being prepared.
 
     t, x [5], u [1], p [18], m [3], c [5]; dx [5] in STATE_UNITS per s.
-    dx: rate_of_theta_pan, accel_pan, rate_of_theta_gear_pan, accel_gear_pan, rate_of_i_pan.
     """
     slide_pan, side_pan, active_pan = m[0], m[1], m[2]
     forces = mass_and_forces(t, x, u, p, slide_pan, side_pan, active_pan, c)
@@ -170,7 +169,6 @@ def mode_derivative(t, x, u, p, m, dx):
     """Write the time derivative of the state into dx in the modes m.
 
     t, x [5], u [1], p [18], m [3]; dx [5] in STATE_UNITS per s.
-    dx: rate_of_theta_pan, accel_pan, rate_of_theta_gear_pan, accel_gear_pan, rate_of_i_pan.
     """
     prepared_derivative(t, x, u, p, m, constants(p), dx)
 
@@ -459,7 +457,6 @@ def outputs(t, x, u, p, y):
     """Write the measured signals into y.
 
     t, x [5], u [1], p [18]; y [2] in OUTPUT_UNITS.
-    y: reading_theta_pan, reading_i_pan.
     """
     theta_pan, i_pan = x[0], x[4]
     y[0] = theta_pan  # reading_theta_pan
@@ -490,7 +487,6 @@ def margins(p, margin):
     """Write by how much the parameters meet every row of REQUIREMENTS into margin.
 
     p [18]; margin [1] in units of what is compared.
-    margin: requirement_0.
     """
     F_c_pan, F_s_pan = p[2], p[3]
     margin[0] = -F_c_pan + F_s_pan  # requirement_0
@@ -604,4 +600,4 @@ EFFECTS = (
     ("dc_motor", "pan", ("L_pan", "R_pan", "K_t_pan", "J_motor_pan", "N_pan"), (), (),
      "geared DC motor", "thesis Eq. 3.10, Eq. 3.11 with erratum 8", "", False),
 )
-# END sha256 24160b92b8db753c4c4e66bb47143df5e3e543e3ec77cc683fa21e260f72fe5f
+# END sha256 e21718c0a7ebf8ee0233fb8ced3e991f57204ac047108edfb0b912afd6837e1e

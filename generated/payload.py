@@ -43,7 +43,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "6b466d948e617b90"
+MODEL_HASH = "7d8704cc2016505e"
 NAME = "payload"
 TITLE = "Pan-tilt platform of the thesis with its payload"
 # How many numbers `prepare` writes.
@@ -90,8 +90,8 @@ PARAMETERS = (
 )
 
 
-# Arguments: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS, all in SI;
-# modes m as MODE_NAMES; c as `prepare` writes it. Lengths are in brackets.
+# Arguments, in SI: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS;
+# modes m as MODE_NAMES; c as `prepare` writes it. Lengths and shapes are in brackets.
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def constants(p):
     """Return what depends on the parameters alone."""
@@ -145,8 +145,7 @@ def prepare(p, c):
     """Write into c what prepared_derivative takes from the parameters alone.
 
     p [14]; c [8].
-    c: inertia_pan_sin_cos_tilt, inertia_pan_sin_sq_tilt, coupling_cos_tilt, coupling_sin_tilt,
-      gravity_cos_tilt, gravity_sin_tilt, inertia_tilt, inertia_pan.
+    c: what `constants` returns, in its order.
     """
     values = constants(p)
     for k in range(PREPARED):
@@ -158,7 +157,6 @@ def prepared_derivative(t, x, u, p, m, c, dx):
     """Write the time derivative of the state into dx in the modes m, c being prepared.
 
     t, x [4], u [2], p [14], m [0], c [8]; dx [4] in STATE_UNITS per s.
-    dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt.
     """
     forces = mass_and_forces(t, x, u, p, c)
     force_pan, force_tilt, mass_pan, mass_pan_tilt = forces[2], forces[4], forces[5], forces[6]
@@ -177,7 +175,6 @@ def mode_derivative(t, x, u, p, m, dx):
     """Write the time derivative of the state into dx in the modes m.
 
     t, x [4], u [2], p [14], m [0]; dx [4] in STATE_UNITS per s.
-    dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt.
     """
     prepared_derivative(t, x, u, p, m, constants(p), dx)
 
@@ -484,7 +481,6 @@ def outputs(t, x, u, p, y):
     """Write the measured signals into y.
 
     t, x [4], u [2], p [14]; y [2] in OUTPUT_UNITS.
-    y: reading_theta_pan, reading_theta_tilt.
     """
     theta_pan, theta_tilt = x[0], x[1]
     y[0] = theta_pan  # reading_theta_pan
@@ -654,4 +650,4 @@ EFFECTS = (
      "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
      "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
 )
-# END sha256 42e3aedf4aaa4e861c5d614c19f5b0f83ee439bd19d85a9943b9b3b294a1c3b1
+# END sha256 77f1ed0169b177196c8fd38f3b57f4cafddf27984033f0141df81c92af9a91e1

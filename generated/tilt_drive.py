@@ -60,7 +60,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "d82400190e49149b"
+MODEL_HASH = "4a2b93e3a6a178d5"
 NAME = "tilt_drive"
 TITLE = "Tilt drive of the thesis"
 # How many numbers `prepare` writes.
@@ -116,8 +116,8 @@ PARAMETERS = (
 )
 
 
-# Arguments: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS, all in SI;
-# modes m as MODE_NAMES; c as `prepare` writes it. Lengths are in brackets.
+# Arguments, in SI: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS;
+# modes m as MODE_NAMES; c as `prepare` writes it. Lengths and shapes are in brackets.
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def constants(p):
     """Return what depends on the parameters alone."""
@@ -211,9 +211,7 @@ def prepare(p, c):
     """Write into c what prepared_derivative takes from the parameters alone.
 
     p [20]; c [10].
-    c: l_ground_tilt_sq_plus_r_arm_tilt_sq, linkage_cos_tilt, linkage_sin_tilt, lead_tilt_inverse,
-      gravity_cos_tilt, gravity_sin_tilt, inertia_tilt, lowered_tilt, raised_tilt,
-      raised_tilt_minus_lowered_tilt.
+    c: what `constants` returns, in its order.
     """
     values = constants(p)
     for k in range(PREPARED):
@@ -225,7 +223,6 @@ def prepared_derivative(t, x, u, p, m, c, dx):
     """Write the time derivative of the state into dx in the modes m, c being prepared.
 
     t, x [3], u [1], p [20], m [1], c [10]; dx [3] in STATE_UNITS per s.
-    dx: rate_of_theta_tilt, accel_tilt, rate_of_i_tilt.
     """
     slide_tilt = m[0]
     forces = mass_and_forces(t, x, u, p, slide_tilt, c)
@@ -242,7 +239,6 @@ def mode_derivative(t, x, u, p, m, dx):
     """Write the time derivative of the state into dx in the modes m.
 
     t, x [3], u [1], p [20], m [1]; dx [3] in STATE_UNITS per s.
-    dx: rate_of_theta_tilt, accel_tilt, rate_of_i_tilt.
     """
     prepared_derivative(t, x, u, p, m, constants(p), dx)
 
@@ -257,11 +253,10 @@ def guard_values(t, x, u, p, slide_tilt):
     lowered_tilt, raised_tilt, raised_tilt_minus_lowered_tilt = c[7], c[8], c[9]
     transmitted_torque_tilt = carried_tilt_factor * ratio_tilt
     holding_tilt = -carried_tilt_term + load_torque_tilt + transmitted_torque_tilt
-    forward_tilt_factor = 0.5 * load_torque_tilt * (lowered_tilt + raised_tilt - 2.0)
+    forward_tilt_term = 0.5 * load_torque_tilt * (lowered_tilt + raised_tilt - 2.0)
     abs_load_torque_tilt = abs(load_torque_tilt)
-    forward_tilt = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt - forward_tilt_factor
-    backward_tilt = (0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt
-        + forward_tilt_factor)
+    forward_tilt = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt - forward_tilt_term
+    backward_tilt = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt + forward_tilt_term
     return holding_tilt, forward_tilt, backward_tilt
 
 
@@ -411,15 +406,15 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * ratio_tilt_by_theta_tilt_factor - quarter_length_tilt_inverse_cubed
         * (ratio_tilt_by_N_tilt_factor * ratio_tilt_by_N_tilt_factor))
     N_tilt_ratio_tilt_by_theta_tilt_factor = N_tilt * ratio_tilt_by_theta_tilt_factor
-    ratio_tilt_by_theta_tilt_by_theta_tilt_factor = (N_tilt_ratio_tilt_by_theta_tilt_factor
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term = (N_tilt_ratio_tilt_by_theta_tilt_factor
         * lead_tilt_inverse_pi_length_tilt_inverse_sq)
     ratio_tilt_by_length_tilt = -N_tilt * ratio_tilt_by_theta_tilt_factor_3
     ratio_tilt_by_theta_tilt_by_length_tilt = (2.0 * math.pi * N_tilt * lead_tilt_inverse
         * length_tilt_by_theta_tilt * length_tilt_inverse_cubed * ratio_tilt_by_N_tilt_factor
-        - ratio_tilt_by_theta_tilt_by_theta_tilt_factor)
+        - ratio_tilt_by_theta_tilt_by_theta_tilt_term)
     ratio_tilt_by_theta_tilt_by_theta_tilt = (length_tilt_by_theta_tilt
         * ratio_tilt_by_theta_tilt_by_length_tilt - length_tilt_by_theta_tilt
-        * ratio_tilt_by_theta_tilt_by_theta_tilt_factor + length_tilt_by_theta_tilt_by_theta_tilt
+        * ratio_tilt_by_theta_tilt_by_theta_tilt_term + length_tilt_by_theta_tilt_by_theta_tilt
         * ratio_tilt_by_length_tilt - ratio_tilt)
     omega_tilt_sq = omega_tilt * omega_tilt
     omega_tilt_sq_ratio_tilt_by_theta_tilt = omega_tilt_sq * ratio_tilt_by_theta_tilt
@@ -818,17 +813,17 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         - carried_tilt_by_theta_tilt_factor + force_tilt_by_ratio_tilt * ratio_tilt_by_theta_tilt)
     sign_load_torque_tilt = 0.0 if load_torque_tilt == 0.0 else math.copysign(1.0, load_torque_tilt)
     raised_tilt_minus_lowered_tilt = -lowered_tilt + raised_tilt
-    forward_tilt_by_theta_tilt_factor = 0.5 * lowered_tilt + 0.5 * raised_tilt - 1.0
-    forward_tilt_by_theta_tilt_factor_2 = (-forward_tilt_by_theta_tilt_factor
+    forward_tilt_by_theta_tilt_term = 0.5 * lowered_tilt + 0.5 * raised_tilt - 1.0
+    forward_tilt_by_theta_tilt_factor = (-forward_tilt_by_theta_tilt_term
         + 0.5 * raised_tilt_minus_lowered_tilt * sign_load_torque_tilt)
     # forward_tilt_by_theta_tilt
-    gx[1, 0] = -carried_tilt_by_theta_tilt_factor * forward_tilt_by_theta_tilt_factor_2
-    backward_tilt_by_theta_tilt_factor = (forward_tilt_by_theta_tilt_factor
+    gx[1, 0] = -carried_tilt_by_theta_tilt_factor * forward_tilt_by_theta_tilt_factor
+    backward_tilt_by_theta_tilt_factor = (forward_tilt_by_theta_tilt_term
         + 0.5 * raised_tilt_minus_lowered_tilt * sign_load_torque_tilt)
     # backward_tilt_by_theta_tilt
     gx[2, 0] = -backward_tilt_by_theta_tilt_factor * carried_tilt_by_theta_tilt_factor
     gx[0, 1] = -b_tilt_plus_carried_tilt_by_omega_tilt_factor  # holding_tilt_by_omega_tilt
-    gx[1, 1] = -b_tilt * forward_tilt_by_theta_tilt_factor_2  # forward_tilt_by_omega_tilt
+    gx[1, 1] = -b_tilt * forward_tilt_by_theta_tilt_factor  # forward_tilt_by_omega_tilt
     gx[2, 1] = -b_tilt * backward_tilt_by_theta_tilt_factor  # backward_tilt_by_omega_tilt
     gx[0, 2] = driving_torque_tilt_by_i_tilt  # holding_tilt_by_i_tilt
     # holding_tilt_by_m_payload
@@ -836,25 +831,25 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     cos_tilt_gravity_cos_tilt_by_m_payload = cos_tilt * gravity_cos_tilt_by_m_payload
     gravity_sin_tilt_by_m_payload_sin_tilt = gravity_sin_tilt_by_m_payload * sin_tilt
     # forward_tilt_by_m_payload
-    gp[1, 0] = (cos_tilt_gravity_cos_tilt_by_m_payload * forward_tilt_by_theta_tilt_factor_2
-        + forward_tilt_by_theta_tilt_factor_2 * gravity_sin_tilt_by_m_payload_sin_tilt)
+    gp[1, 0] = (cos_tilt_gravity_cos_tilt_by_m_payload * forward_tilt_by_theta_tilt_factor
+        + forward_tilt_by_theta_tilt_factor * gravity_sin_tilt_by_m_payload_sin_tilt)
     # backward_tilt_by_m_payload
     gp[2, 0] = (backward_tilt_by_theta_tilt_factor * cos_tilt_gravity_cos_tilt_by_m_payload
         + backward_tilt_by_theta_tilt_factor * gravity_sin_tilt_by_m_payload_sin_tilt)
     gp[0, 2] = cos_tilt * gravity_cos_tilt_by_c_x_payload  # holding_tilt_by_c_x_payload
     cos_tilt_gravity_cos_tilt_by_c_x_payload = cos_tilt * gravity_cos_tilt_by_c_x_payload
     # forward_tilt_by_c_x_payload
-    gp[1, 2] = cos_tilt_gravity_cos_tilt_by_c_x_payload * forward_tilt_by_theta_tilt_factor_2
+    gp[1, 2] = cos_tilt_gravity_cos_tilt_by_c_x_payload * forward_tilt_by_theta_tilt_factor
     # backward_tilt_by_c_x_payload
     gp[2, 2] = backward_tilt_by_theta_tilt_factor * cos_tilt_gravity_cos_tilt_by_c_x_payload
     gp[0, 3] = gravity_cos_tilt_by_c_x_payload * sin_tilt  # holding_tilt_by_c_z_payload
     gravity_cos_tilt_by_c_x_payload_sin_tilt = gravity_cos_tilt_by_c_x_payload * sin_tilt
     # forward_tilt_by_c_z_payload
-    gp[1, 3] = forward_tilt_by_theta_tilt_factor_2 * gravity_cos_tilt_by_c_x_payload_sin_tilt
+    gp[1, 3] = forward_tilt_by_theta_tilt_factor * gravity_cos_tilt_by_c_x_payload_sin_tilt
     # backward_tilt_by_c_z_payload
     gp[2, 3] = backward_tilt_by_theta_tilt_factor * gravity_cos_tilt_by_c_x_payload_sin_tilt
     gp[0, 4] = -omega_tilt  # holding_tilt_by_b_tilt
-    gp[1, 4] = -forward_tilt_by_theta_tilt_factor_2 * omega_tilt  # forward_tilt_by_b_tilt
+    gp[1, 4] = -forward_tilt_by_theta_tilt_factor * omega_tilt  # forward_tilt_by_b_tilt
     gp[2, 4] = -backward_tilt_by_theta_tilt_factor * omega_tilt  # backward_tilt_by_b_tilt
     gp[0, 7] = driving_torque_tilt_by_K_t_tilt  # holding_tilt_by_K_t_tilt
     gp[0, 8] = -minus_holding_tilt_by_J_motor_tilt  # holding_tilt_by_J_motor_tilt
@@ -903,8 +898,8 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     cos_tilt_gravity_cos_tilt_by_gravity = cos_tilt * gravity_cos_tilt_by_gravity
     gravity_sin_tilt_by_gravity_sin_tilt = gravity_sin_tilt_by_gravity * sin_tilt
     # forward_tilt_by_gravity
-    gp[1, 19] = (cos_tilt_gravity_cos_tilt_by_gravity * forward_tilt_by_theta_tilt_factor_2
-        + forward_tilt_by_theta_tilt_factor_2 * gravity_sin_tilt_by_gravity_sin_tilt)
+    gp[1, 19] = (cos_tilt_gravity_cos_tilt_by_gravity * forward_tilt_by_theta_tilt_factor
+        + forward_tilt_by_theta_tilt_factor * gravity_sin_tilt_by_gravity_sin_tilt)
     # backward_tilt_by_gravity
     gp[2, 19] = (backward_tilt_by_theta_tilt_factor * cos_tilt_gravity_cos_tilt_by_gravity
         + backward_tilt_by_theta_tilt_factor * gravity_sin_tilt_by_gravity_sin_tilt)
@@ -915,7 +910,6 @@ def outputs(t, x, u, p, y):
     """Write the measured signals into y.
 
     t, x [3], u [1], p [20]; y [2] in OUTPUT_UNITS.
-    y: reading_theta_tilt, reading_i_tilt.
     """
     theta_tilt, i_tilt = x[0], x[2]
     y[0] = theta_tilt  # reading_theta_tilt
@@ -963,7 +957,6 @@ def margins(p, margin):
     """Write by how much the parameters meet every row of REQUIREMENTS into margin.
 
     p [20]; margin [3] in units of what is compared.
-    margin: requirement_0, requirement_1, requirement_2.
     """
     lead_tilt, d_screw_tilt, f_screw_tilt, l_ground_tilt = p[11], p[12], p[13], p[14]
     l_min_tilt, r_arm_tilt, s_start_tilt, s_max_tilt = p[15], p[16], p[17], p[18]
@@ -1040,4 +1033,4 @@ EFFECTS = (
      "linear actuator with lead screw and linkage",
      "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6", "", False),
 )
-# END sha256 8969c019c706c53ad3498c99b1ce4c53298c660cd46c45160d82a28608b49060
+# END sha256 49bffeeececffe882ce3104a2918fe4f891d9d65be8267908a0742d8a9a61fe0

@@ -31,9 +31,10 @@ from ptp_symbolic.symbolic.targets.numba.mode_functions import (
 from ptp_symbolic.symbolic.targets.printing import Language
 from ptp_symbolic.symbolic.targets.target import late_inputs
 
-ARGUMENTS = """# Arguments, in SI: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS;
-# modes m as MODE_NAMES; c as `prepare` writes it. Lengths and shapes are in brackets.
-"""
+ARGUMENTS = (
+    "# Arguments: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS (SI);\n"
+    "# modes m as MODE_NAMES; c as `prepare` writes it. Lengths and shapes are in brackets.\n"
+)
 MATRICES = {
     "fx": "rows and columns as STATE_NAMES",
     "fu": "rows as STATE_NAMES, columns as INPUT_NAMES",
