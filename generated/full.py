@@ -101,7 +101,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "f322bb2ed40fe0ea"
+MODEL_HASH = "077ed13411e1d0e2"
 NAME = "full"
 TITLE = "Both axes of the thesis, all drives"
 # How many numbers `prepare` writes.
@@ -188,6 +188,8 @@ PARAMETERS = (
 )
 
 
+# Arguments, in SI: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS;
+# modes m as MODE_NAMES; c as `prepare` writes it. Lengths and shapes are in brackets.
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def constants(p):
     """Return what depends on the parameters alone."""
@@ -239,7 +241,7 @@ def constants(p):
 
 
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
-def mass_and_forces(t, x, u, p, m, c):
+def mass_and_forces(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan, c):
     """Return mass matrix, forces and what else the functions below have in common."""
     theta_pan, theta_tilt, omega_pan, omega_tilt, theta_gear_pan = x[0], x[1], x[2], x[3], x[4]
     omega_gear_pan, i_pan, i_tilt = x[5], x[6], x[7]
@@ -248,7 +250,6 @@ def mass_and_forces(t, x, u, p, m, c):
     a_F_c_pan, a_F_s_pan, a_v_s_pan, a_F_v_pan, k_shaft_pan = p[17], p[18], p[19], p[20], p[22]
     d_shaft_pan, L_pan, R_pan, K_t_pan, N_pan, L_tilt = p[23], p[24], p[25], p[26], p[28], p[29]
     R_tilt, K_t_tilt, J_motor_tilt, b_motor_tilt, N_tilt = p[30], p[31], p[32], p[33], p[34]
-    slide_pan, slide_tilt, side_pan, active_pan = m[0], m[1], m[2], m[3]
     inertia_pan_sin_cos_tilt, inertia_pan_sin_sq_tilt, coupling_cos_tilt = c[0], c[1], c[2]
     coupling_sin_tilt, half_gap_pan, inertia_tilt, inertia_pan = c[3], c[4], c[5], c[6]
     lead_tilt_inverse, lowered_tilt, l_ground_tilt_sq_plus_r_arm_tilt_sq = c[7], c[8], c[9]
@@ -262,10 +263,10 @@ def mass_and_forces(t, x, u, p, m, c):
     omega_gear_pan_minus_omega_pan = omega_gear_pan - omega_pan
     d_shaft_pan_omega_gear_pan_minus_omega_pan = d_shaft_pan * omega_gear_pan_minus_omega_pan
     theta_pan_minus_theta_gear_pan = -theta_gear_pan + theta_pan
-    shaft_torque_pan_term = -half_gap_pan * side_pan - theta_pan_minus_theta_gear_pan
-    k_shaft_pan_shaft_torque_pan_term = k_shaft_pan * shaft_torque_pan_term
+    shaft_torque_pan_factor = -half_gap_pan * side_pan - theta_pan_minus_theta_gear_pan
+    k_shaft_pan_shaft_torque_pan_factor = k_shaft_pan * shaft_torque_pan_factor
     shaft_torque_pan = (active_pan * (d_shaft_pan_omega_gear_pan_minus_omega_pan
-        + k_shaft_pan_shaft_torque_pan_term))
+        + k_shaft_pan_shaft_torque_pan_factor))
     force_pan = (-b_pan * omega_pan - omega_tilt * (coriolis
         + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt))
         + shaft_torque_pan)
@@ -279,24 +280,24 @@ def mass_and_forces(t, x, u, p, m, c):
     length_tilt = (math.sqrt(-cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq
         - linkage_sin_tilt_sin_tilt))
     N_tilt_lead_tilt_inverse_pi_per_length_tilt = math.pi * N_tilt * lead_tilt_inverse / length_tilt
-    ratio_tilt_term = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
-    ratio_tilt = N_tilt_lead_tilt_inverse_pi_per_length_tilt * ratio_tilt_term
+    ratio_tilt_factor = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
+    ratio_tilt = N_tilt_lead_tilt_inverse_pi_per_length_tilt * ratio_tilt_factor
     ratio_tilt_sq = ratio_tilt * ratio_tilt
     J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
     lost_lowering_tilt = ((1.0 - lowered_tilt) / abs(J_motor_tilt_ratio_tilt_sq
         + load_inertia_tilt * lowered_tilt))
     lost_raising_tilt = ((raised_tilt - 1.0) / (J_motor_tilt_ratio_tilt_sq
         + load_inertia_tilt * raised_tilt))
-    length_tilt_by_theta_tilt = 0.5 * ratio_tilt_term / length_tilt
+    length_tilt_by_theta_tilt = 0.5 * ratio_tilt_factor / length_tilt
     ratio_tilt_by_theta_tilt = (-math.pi * N_tilt * lead_tilt_inverse * length_tilt_by_theta_tilt
-        * ratio_tilt_term / (length_tilt * length_tilt)
+        * ratio_tilt_factor / (length_tilt * length_tilt)
         + N_tilt_lead_tilt_inverse_pi_per_length_tilt * (cos_tilt_linkage_cos_tilt
         + linkage_sin_tilt_sin_tilt))
     omega_tilt_sq = omega_tilt * omega_tilt
     driving_torque_tilt_term = J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
     omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
-    driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
-    driving_torque_tilt = -driving_torque_tilt_term + driving_torque_tilt_term_2 * ratio_tilt
+    driving_torque_tilt_factor = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
+    driving_torque_tilt = driving_torque_tilt_factor * ratio_tilt - driving_torque_tilt_term
     force_pan_mass_pan_tilt = force_pan * mass_pan_tilt
     minus_gravity_torque_tilt = cos_tilt * gravity_cos_tilt + gravity_sin_tilt * sin_tilt
     load_torque_tilt_term = (-b_tilt * omega_tilt + 0.5 * coriolis * omega_pan
@@ -305,30 +306,30 @@ def mass_and_forces(t, x, u, p, m, c):
     carried_tilt = (-J_motor_tilt_ratio_tilt_sq * load_torque_tilt
         + driving_torque_tilt * load_inertia_tilt)
     carried_tilt_slide_tilt = carried_tilt * slide_tilt
-    force_tilt_term = (slide_tilt * (0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt
+    friction_torque_tilt = (slide_tilt * (0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt
         + lost_raising_tilt) + 0.5 * (lost_lowering_tilt
         + lost_raising_tilt) * abs(carried_tilt_slide_tilt)))
-    transmitted_torque_tilt = driving_torque_tilt_term_2 * ratio_tilt
-    force_tilt_term_2 = -driving_torque_tilt_term + load_torque_tilt_term + transmitted_torque_tilt
-    force_tilt = -force_tilt_term + force_tilt_term_2
+    transmitted_torque_tilt = driving_torque_tilt_factor * ratio_tilt
+    forcing_tilt = -driving_torque_tilt_term + load_torque_tilt_term + transmitted_torque_tilt
+    force_tilt = forcing_tilt - friction_torque_tilt
     mass_tilt = J_motor_tilt_ratio_tilt_sq + inertia_tilt
     coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
     omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
     stribeck_square_pan = (omega_gear_pan_sq / ((v_s_pan * v_s_pan) * ((a_v_s_pan * slide_pan
         + 1.0) * (a_v_s_pan * slide_pan + 1.0))))
     viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
-    force_gear_pan_term = (slide_pan * (coulomb_torque_pan
+    friction_torque_gear_pan = (slide_pan * (coulomb_torque_pan
         + omega_gear_pan * slide_pan * viscous_coefficient_pan + (F_s_pan * (a_F_s_pan * slide_pan
         + 1.0) - coulomb_torque_pan) * math.exp(-stribeck_square_pan)))
-    force_gear_pan = K_t_pan * N_pan * i_pan - force_gear_pan_term - shaft_torque_pan
+    force_gear_pan = K_t_pan * N_pan * i_pan - friction_torque_gear_pan - shaft_torque_pan
     rate_of_i_pan = (-K_t_pan_N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
     rate_of_i_tilt = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
     return (cos_tilt, sin_tilt, omega_gear_pan_minus_omega_pan,
         d_shaft_pan_omega_gear_pan_minus_omega_pan, theta_pan_minus_theta_gear_pan,
-        shaft_torque_pan_term, k_shaft_pan_shaft_torque_pan_term, shaft_torque_pan, force_pan,
+        shaft_torque_pan_factor, k_shaft_pan_shaft_torque_pan_factor, shaft_torque_pan, force_pan,
         mass_pan, mass_pan_tilt, mass_pan_tilt_sq, ratio_tilt_sq, omega_tilt_sq,
-        force_pan_mass_pan_tilt, minus_gravity_torque_tilt, load_torque_tilt, force_tilt_term,
-        force_tilt_term_2, force_tilt, mass_tilt, omega_gear_pan_sq, force_gear_pan_term,
+        force_pan_mass_pan_tilt, minus_gravity_torque_tilt, load_torque_tilt, friction_torque_tilt,
+        forcing_tilt, force_tilt, mass_tilt, omega_gear_pan_sq, friction_torque_gear_pan,
         force_gear_pan, rate_of_i_pan, rate_of_i_tilt)
 
 
@@ -336,12 +337,8 @@ def mass_and_forces(t, x, u, p, m, c):
 def prepare(p, c):
     """Write into c what prepared_derivative takes from the parameters alone.
 
-    p [44] in the units of PARAMETERS; c [19] of prepare.
-    c: inertia_pan_sin_cos_tilt, inertia_pan_sin_sq_tilt, coupling_cos_tilt, coupling_sin_tilt,
-      half_gap_pan, inertia_tilt, inertia_pan, lead_tilt_inverse, lowered_tilt,
-      l_ground_tilt_sq_plus_r_arm_tilt_sq, linkage_cos_tilt, linkage_sin_tilt, raised_tilt,
-      gravity_cos_tilt, gravity_sin_tilt, mass_gear_pan, inverse_mass_gear_pan, K_t_pan_N_pan,
-      raised_tilt_minus_lowered_tilt.
+    p [44]; c [19].
+    c: what `constants` returns, in its order.
     """
     values = constants(p)
     for k in range(PREPARED):
@@ -352,18 +349,15 @@ def prepare(p, c):
 def prepared_derivative(t, x, u, p, m, c, dx):
     """Write the time derivative of the state into dx in the modes m, c being prepared.
 
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
-      see MODE_NAMES; c [19] of prepare; dx [8] in STATE_UNITS per s.
-    dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt, rate_of_theta_gear_pan,
-      accel_gear_pan, rate_of_i_pan, rate_of_i_tilt.
+    t, x [8], u [2], p [44], m [4], c [19]; dx [8] in STATE_UNITS per s.
     """
-    forces = mass_and_forces(t, x, u, p, m, c)
+    slide_pan, slide_tilt, side_pan, active_pan = m[0], m[1], m[2], m[3]
+    forces = mass_and_forces(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan, c)
     force_pan, mass_pan, mass_pan_tilt = forces[8], forces[9], forces[10]
     mass_pan_tilt_sq, force_pan_mass_pan_tilt, force_tilt = forces[11], forces[14], forces[19]
     mass_tilt, force_gear_pan, rate_of_i_pan = forces[20], forces[23], forces[24]
     rate_of_i_tilt = forces[25]
     omega_pan, omega_tilt, omega_gear_pan = x[2], x[3], x[5]
-    slide_pan, slide_tilt = m[0], m[1]
     inverse_mass_gear_pan = c[16]
     dx[0] = omega_pan  # rate_of_theta_pan
     dx[1] = omega_tilt  # rate_of_theta_tilt
@@ -384,77 +378,78 @@ def prepared_derivative(t, x, u, p, m, c, dx):
 def mode_derivative(t, x, u, p, m, dx):
     """Write the time derivative of the state into dx in the modes m.
 
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
-      see MODE_NAMES; dx [8] in STATE_UNITS per s.
-    dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt, rate_of_theta_gear_pan,
-      accel_gear_pan, rate_of_i_pan, rate_of_i_tilt.
+    t, x [8], u [2], p [44], m [4]; dx [8] in STATE_UNITS per s.
     """
     prepared_derivative(t, x, u, p, m, constants(p), dx)
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
-def guards(t, x, u, p, m, g):
-    """Write holding and breakaway torques, gap separations and contact torques into g.
-
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
-      see MODE_NAMES; g [10] in N m and rad.
-    g: holding_pan, forward_pan, backward_pan, holding_tilt, forward_tilt, backward_tilt,
-      separation_pan, half_gap_pan, upper_pan, lower_pan.
-    """
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def guard_values(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan):
+    """Return what `guards` writes, in modes that are given one by one."""
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan, c)
     d_shaft_pan_omega_gear_pan_minus_omega_pan = forces[3]
     theta_pan_minus_theta_gear_pan, shaft_torque_pan, force_pan = forces[4], forces[7], forces[8]
     mass_pan, mass_pan_tilt, mass_pan_tilt_sq = forces[9], forces[10], forces[11]
-    load_torque_tilt, force_tilt_term_2, force_tilt = forces[16], forces[18], forces[19]
+    load_torque_tilt, forcing_tilt, force_tilt = forces[16], forces[18], forces[19]
     mass_tilt = forces[20]
     i_pan = x[6]
     F_s_pan, a_F_s_pan, k_shaft_pan = p[14], p[18], p[22]
-    slide_tilt = m[1]
     half_gap_pan, lowered_tilt, raised_tilt, K_t_pan_N_pan = c[4], c[8], c[12], c[17]
     raised_tilt_minus_lowered_tilt = c[18]
     slide_tilt_sq = slide_tilt * slide_tilt
     inverse_determinant = 1.0 / (mass_pan * mass_tilt - mass_pan_tilt_sq * slide_tilt_sq)
     accel_pan = (inverse_determinant * (force_pan * mass_tilt
         - force_tilt * mass_pan_tilt * slide_tilt_sq))
-    g[0] = K_t_pan_N_pan * i_pan - shaft_torque_pan  # holding_pan
-    g[1] = F_s_pan * (a_F_s_pan + 1.0)  # forward_pan
-    g[2] = F_s_pan * (1.0 - a_F_s_pan)  # backward_pan
-    g[3] = -accel_pan * mass_pan_tilt + force_tilt_term_2  # holding_tilt
+    holding_pan = K_t_pan_N_pan * i_pan - shaft_torque_pan
+    forward_pan = F_s_pan * (a_F_s_pan + 1.0)
+    backward_pan = F_s_pan * (1.0 - a_F_s_pan)
+    holding_tilt = -accel_pan * mass_pan_tilt + forcing_tilt
     forward_tilt_term = 0.5 * load_torque_tilt * (lowered_tilt + raised_tilt - 2.0)
     abs_load_torque_tilt = abs(load_torque_tilt)
-    # forward_tilt
-    g[4] = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt - forward_tilt_term
-    # backward_tilt
-    g[5] = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt + forward_tilt_term
-    g[6] = -theta_pan_minus_theta_gear_pan  # separation_pan
-    g[7] = half_gap_pan
-    g[8] = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (-half_gap_pan
-        - theta_pan_minus_theta_gear_pan))  # upper_pan
-    g[9] = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (half_gap_pan
-        - theta_pan_minus_theta_gear_pan))  # lower_pan
+    forward_tilt = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt - forward_tilt_term
+    backward_tilt = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt + forward_tilt_term
+    separation_pan = -theta_pan_minus_theta_gear_pan
+    upper_pan = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (-half_gap_pan
+        - theta_pan_minus_theta_gear_pan))
+    lower_pan = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (half_gap_pan
+        - theta_pan_minus_theta_gear_pan))
+    return (holding_pan, forward_pan, backward_pan, holding_tilt, forward_tilt, backward_tilt,
+        separation_pan, half_gap_pan, upper_pan, lower_pan)
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def guards(t, x, u, p, m, g):
+    """Write holding and breakaway torques, gap separations and contact torques into g.
+
+    t, x [8], u [2], p [44], m [4]; g [10] in N m and rad.
+    g: holding_pan, forward_pan, backward_pan, holding_tilt, forward_tilt, backward_tilt,
+      separation_pan, half_gap_pan, upper_pan, lower_pan.
+    """
+    slide_pan, slide_tilt, side_pan, active_pan = m[0], m[1], m[2], m[3]
+    (g[0], g[1], g[2], g[3], g[4], g[5], g[6], g[7], g[8], g[9]) = guard_values(t, x, u, p,
+        slide_pan, slide_tilt, side_pan, active_pan)
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def energy(t, x, u, p, m, e):
     """Write stored energy in J, power in and dissipated power in W into e.
 
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
-      see MODE_NAMES; e [3] in J, W and W.
+    t, x [8], u [2], p [44], m [4]; e [3] in J, W and W.
     e: stored, power_in, dissipated.
     """
+    slide_pan, slide_tilt, side_pan, active_pan = m[0], m[1], m[2], m[3]
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan, c)
     cos_tilt, sin_tilt, omega_gear_pan_minus_omega_pan = forces[0], forces[1], forces[2]
-    d_shaft_pan_omega_gear_pan_minus_omega_pan, shaft_torque_pan_term = forces[3], forces[5]
-    k_shaft_pan_shaft_torque_pan_term, mass_pan, mass_pan_tilt = forces[6], forces[9], forces[10]
-    ratio_tilt_sq, omega_tilt_sq, force_tilt_term = forces[12], forces[13], forces[17]
-    mass_tilt, omega_gear_pan_sq, force_gear_pan_term = forces[20], forces[21], forces[22]
+    d_shaft_pan_omega_gear_pan_minus_omega_pan, shaft_torque_pan_factor = forces[3], forces[5]
+    k_shaft_pan_shaft_torque_pan_factor, mass_pan, mass_pan_tilt = forces[6], forces[9], forces[10]
+    ratio_tilt_sq, omega_tilt_sq, friction_torque_tilt = forces[12], forces[13], forces[17]
+    mass_tilt, omega_gear_pan_sq, friction_torque_gear_pan = forces[20], forces[21], forces[22]
     omega_pan, omega_tilt, omega_gear_pan, i_pan, i_tilt = x[2], x[3], x[5], x[6], x[7]
     u_pan, u_tilt = u[0], u[1]
     b_pan, b_tilt, k_shaft_pan, L_pan, R_pan, L_tilt = p[11], p[12], p[22], p[24], p[25], p[29]
     R_tilt, b_motor_tilt = p[30], p[33]
-    side_pan, active_pan = m[2], m[3]
     gravity_cos_tilt, gravity_sin_tilt, mass_gear_pan = c[13], c[14], c[15]
     side_pan_sq = side_pan * side_pan
     i_pan_sq = i_pan * i_pan
@@ -462,7 +457,7 @@ def energy(t, x, u, p, m, e):
     omega_pan_sq = omega_pan * omega_pan
     e[0] = (0.5 * L_pan * i_pan_sq + 0.5 * L_tilt * i_tilt_sq + cos_tilt * gravity_sin_tilt
         - gravity_cos_tilt * sin_tilt
-        + 0.5 * k_shaft_pan * (shaft_torque_pan_term * shaft_torque_pan_term) * side_pan_sq
+        + 0.5 * k_shaft_pan * (shaft_torque_pan_factor * shaft_torque_pan_factor) * side_pan_sq
         + 0.5 * mass_gear_pan * omega_gear_pan_sq + 0.5 * mass_pan * omega_pan_sq
         + mass_pan_tilt * omega_pan * omega_tilt + 0.5 * mass_tilt * omega_tilt_sq)  # stored
     e[1] = i_pan * u_pan + i_tilt * u_tilt  # power_in
@@ -470,10 +465,10 @@ def energy(t, x, u, p, m, e):
     winding_loss_pan = R_pan * i_pan_sq
     winding_loss_tilt = R_tilt * i_tilt_sq
     e[2] = (b_motor_tilt * omega_tilt_sq * ratio_tilt_sq + b_pan * omega_pan_sq
-        + b_tilt * omega_tilt_sq + force_gear_pan_term * omega_gear_pan
-        + force_tilt_term * omega_tilt
+        + b_tilt * omega_tilt_sq + friction_torque_gear_pan * omega_gear_pan
+        + friction_torque_tilt * omega_tilt
         + twist_rate_pan * (active_pan * d_shaft_pan_omega_gear_pan_minus_omega_pan
-        - k_shaft_pan_shaft_torque_pan_term * (1.0 - active_pan)) + winding_loss_pan
+        - k_shaft_pan_shaft_torque_pan_factor * (1.0 - active_pan)) + winding_loss_pan
         + winding_loss_tilt)  # dissipated
 
 
@@ -481,13 +476,13 @@ def energy(t, x, u, p, m, e):
 def equation_error(t, x, u, p, m, r):
     """Write torques that rows lack, then other states' rates, into r; x ends in accelerations.
 
-    t in s; x [11] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
-      see MODE_NAMES; r [5] in N m, then STATE_UNITS per s.
+    t, x [11], u [2], p [44], m [4]; r [5] in N m, then STATE_UNITS per s.
     x: STATE_NAMES, then given_accel_pan, given_accel_tilt, given_accel_gear_pan.
     r: torque_pan, torque_tilt, torque_gear_pan, rate_of_i_pan, rate_of_i_tilt.
     """
+    slide_pan, slide_tilt, side_pan, active_pan = m[0], m[1], m[2], m[3]
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan, c)
     force_pan, mass_pan, mass_pan_tilt, force_tilt = forces[8], forces[9], forces[10], forces[19]
     mass_tilt, force_gear_pan, rate_of_i_pan = forces[20], forces[23], forces[24]
     rate_of_i_tilt = forces[25]
@@ -505,11 +500,11 @@ def equation_error(t, x, u, p, m, r):
 def mass_matrix(t, x, u, p, m, M):
     """Write the mass matrix of the joints, then of gear outputs, into M.
 
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
-      see MODE_NAMES; M [3, 3] in kg m^2.
+    t, x [8], u [2], p [44], m [4]; M [3, 3] in kg m^2.
     """
+    slide_pan, slide_tilt, side_pan, active_pan = m[0], m[1], m[2], m[3]
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan, c)
     mass_pan, mass_pan_tilt, mass_tilt = forces[9], forces[10], forces[20]
     mass_gear_pan = c[15]
     M[0, 0] = mass_pan
@@ -527,12 +522,12 @@ def mass_matrix(t, x, u, p, m, M):
 def gravity_torque(t, x, u, p, m, G):
     """Write the torques that hold the machine against its weight into G.
 
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
-      see MODE_NAMES; G [3] in N m.
+    t, x [8], u [2], p [44], m [4]; G [3] in N m.
     G: gravity_torque_pan, gravity_torque_tilt, gravity_torque_gear_pan.
     """
+    slide_pan, slide_tilt, side_pan, active_pan = m[0], m[1], m[2], m[3]
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan, c)
     minus_gravity_torque_tilt = forces[15]
     G[0] = 0.0  # gravity_torque_pan
     G[1] = -minus_gravity_torque_tilt  # gravity_torque_tilt
@@ -543,13 +538,10 @@ def gravity_torque(t, x, u, p, m, G):
 def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     """Write the non-zero derivatives of dx into fx, fu, fp and those of guards into gx, gp.
 
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
-      see MODE_NAMES; fx [8, 8]; fu [8, 2]; fp [8, 44]; gx [10, 8]; gp [10, 44].
-    fx: rows and columns as STATE_NAMES.
-    fu: rows as STATE_NAMES, columns as INPUT_NAMES.
-    fp: rows as STATE_NAMES, columns as PARAMETERS.
-    gx: rows as g of guards, columns as STATE_NAMES.
-    gp: rows as g of guards, columns as PARAMETERS.
+    t, x [8], u [2], p [44], m [4]; fx [8, 8]; fu [8, 2]; fp [8, 44]; gx [10, 8]; gp [10, 44].
+    fx: rows and columns as STATE_NAMES; fu: rows as STATE_NAMES, columns as INPUT_NAMES; fp: rows
+      as STATE_NAMES, columns as PARAMETERS; gx: rows as g of guards, columns as STATE_NAMES; gp:
+      rows as g of guards, columns as PARAMETERS.
     Where fp or gx is empty, it and what follows it is not computed.
     """
     theta_pan, theta_tilt, omega_pan, omega_tilt, theta_gear_pan = x[0], x[1], x[2], x[3], x[4]
@@ -601,8 +593,8 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     lead_tilt_inverse = 1.0 / lead_tilt
     lead_tilt_inverse_pi = math.pi * lead_tilt_inverse
     lead_tilt_inverse_pi_length_tilt_inverse = lead_tilt_inverse_pi * length_tilt_inverse
-    ratio_tilt_by_N_tilt_term = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
-    ratio_tilt_by_N_tilt = lead_tilt_inverse_pi_length_tilt_inverse * ratio_tilt_by_N_tilt_term
+    ratio_tilt_by_N_tilt_factor = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
+    ratio_tilt_by_N_tilt = lead_tilt_inverse_pi_length_tilt_inverse * ratio_tilt_by_N_tilt_factor
     ratio_tilt = N_tilt * ratio_tilt_by_N_tilt
     ratio_tilt_sq = ratio_tilt * ratio_tilt
     J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
@@ -624,57 +616,58 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     d_screw_tilt_pi = math.pi * d_screw_tilt
     f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
     d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt = d_screw_tilt_pi + f_screw_tilt_lead_tilt
-    lowered_tilt_term = 1.0 / d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt
+    lowered_tilt_factor = 1.0 / d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt
     d_screw_tilt_pi_f_screw_tilt = d_screw_tilt_pi * f_screw_tilt
     d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt = d_screw_tilt_pi_f_screw_tilt - lead_tilt
-    lowered_tilt_term_2 = d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt * lowered_tilt_term
+    lowered_tilt_factor_2 = d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt * lowered_tilt_factor
     d_screw_tilt_pi_lead_tilt_inverse = d_screw_tilt_pi * lead_tilt_inverse
-    lowered_tilt = -d_screw_tilt_pi_lead_tilt_inverse * lowered_tilt_term_2
+    lowered_tilt = -d_screw_tilt_pi_lead_tilt_inverse * lowered_tilt_factor_2
     one_minus_lowered_tilt = 1.0 - lowered_tilt
     load_inertia_tilt = inertia_tilt - mass_pan_inverse * mass_pan_tilt_sq
-    lost_lowering_tilt_term = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt
-    abs_lost_lowering_tilt_term_inverse = 1.0 / abs(lost_lowering_tilt_term)
-    lost_lowering_tilt = abs_lost_lowering_tilt_term_inverse * one_minus_lowered_tilt
+    lost_lowering_tilt_denominator = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt
+    abs_lost_lowering_tilt_denominator_inverse = 1.0 / abs(lost_lowering_tilt_denominator)
+    lost_lowering_tilt = abs_lost_lowering_tilt_denominator_inverse * one_minus_lowered_tilt
     d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt = d_screw_tilt_pi - f_screw_tilt_lead_tilt
-    raised_tilt_term = 1.0 / d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt
+    raised_tilt_factor = 1.0 / d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt
     d_screw_tilt_pi_f_screw_tilt_plus_lead_tilt = d_screw_tilt_pi_f_screw_tilt + lead_tilt
-    raised_tilt_term_2 = d_screw_tilt_pi_f_screw_tilt_plus_lead_tilt * raised_tilt_term
-    raised_tilt = d_screw_tilt_pi_lead_tilt_inverse * raised_tilt_term_2
+    raised_tilt_factor_2 = d_screw_tilt_pi_f_screw_tilt_plus_lead_tilt * raised_tilt_factor
+    raised_tilt = d_screw_tilt_pi_lead_tilt_inverse * raised_tilt_factor_2
     raised_tilt_minus_one = raised_tilt - 1.0
-    lost_raising_tilt_term = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * raised_tilt
-    lost_raising_tilt_term_inverse = 1.0 / lost_raising_tilt_term
-    lost_raising_tilt = lost_raising_tilt_term_inverse * raised_tilt_minus_one
+    lost_raising_tilt_denominator = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * raised_tilt
+    lost_raising_tilt_denominator_inverse = 1.0 / lost_raising_tilt_denominator
+    lost_raising_tilt = lost_raising_tilt_denominator_inverse * raised_tilt_minus_one
     lost_lowering_tilt_plus_lost_raising_tilt = lost_lowering_tilt + lost_raising_tilt
-    ratio_tilt_by_theta_tilt_term = cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt
-    ratio_tilt_by_theta_tilt_term_2 = (lead_tilt_inverse_pi_length_tilt_inverse
-        * ratio_tilt_by_theta_tilt_term)
+    ratio_tilt_by_theta_tilt_factor = cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt
+    ratio_tilt_by_theta_tilt_factor_2 = (lead_tilt_inverse_pi_length_tilt_inverse
+        * ratio_tilt_by_theta_tilt_factor)
     half_length_tilt_inverse = 0.5 * length_tilt_inverse
-    length_tilt_by_theta_tilt = half_length_tilt_inverse * ratio_tilt_by_N_tilt_term
+    length_tilt_by_theta_tilt = half_length_tilt_inverse * ratio_tilt_by_N_tilt_factor
     length_tilt_inverse_sq = 1.0 / (length_tilt * length_tilt)
     lead_tilt_inverse_pi_length_tilt_inverse_sq = lead_tilt_inverse_pi * length_tilt_inverse_sq
-    ratio_tilt_by_theta_tilt_term_3 = (lead_tilt_inverse_pi_length_tilt_inverse_sq
-        * ratio_tilt_by_N_tilt_term)
-    ratio_tilt_by_theta_tilt_term_4 = length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_term_3
-    ratio_tilt_by_theta_tilt = (N_tilt * ratio_tilt_by_theta_tilt_term_2
-        - N_tilt * ratio_tilt_by_theta_tilt_term_4)
+    ratio_tilt_by_theta_tilt_factor_3 = (lead_tilt_inverse_pi_length_tilt_inverse_sq
+        * ratio_tilt_by_N_tilt_factor)
+    ratio_tilt_by_theta_tilt_factor_4 = (length_tilt_by_theta_tilt
+        * ratio_tilt_by_theta_tilt_factor_3)
+    ratio_tilt_by_theta_tilt = (N_tilt * ratio_tilt_by_theta_tilt_factor_2
+        - N_tilt * ratio_tilt_by_theta_tilt_factor_4)
     omega_tilt_sq = omega_tilt * omega_tilt
     omega_tilt_sq_ratio_tilt_by_theta_tilt = omega_tilt_sq * ratio_tilt_by_theta_tilt
-    driving_torque_tilt_term = omega_tilt_sq_ratio_tilt_by_theta_tilt * ratio_tilt
-    J_motor_tilt_driving_torque_tilt_term = J_motor_tilt * driving_torque_tilt_term
+    driving_torque_tilt_factor = omega_tilt_sq_ratio_tilt_by_theta_tilt * ratio_tilt
+    J_motor_tilt_driving_torque_tilt_factor = J_motor_tilt * driving_torque_tilt_factor
     omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
     b_motor_tilt_omega_tilt_ratio_tilt = b_motor_tilt * omega_tilt_ratio_tilt
-    driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt_omega_tilt_ratio_tilt
-    driving_torque_tilt = (-J_motor_tilt_driving_torque_tilt_term
-        + driving_torque_tilt_term_2 * ratio_tilt)
+    driving_torque_tilt_factor_2 = K_t_tilt * i_tilt - b_motor_tilt_omega_tilt_ratio_tilt
+    driving_torque_tilt = (-J_motor_tilt_driving_torque_tilt_factor
+        + driving_torque_tilt_factor_2 * ratio_tilt)
     cos_tilt_inertia_pan_per_sin_tilt = cos_tilt * inertia_pan_per_sin_tilt
     coriolis_by_omega_pan = 2.0 * cos_tilt_inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt
     coriolis = coriolis_by_omega_pan * omega_pan
     upper_pan_by_d_shaft_pan = omega_gear_pan - omega_pan
     half_gap_pan = 0.5 * gap_pan
     theta_pan_minus_theta_gear_pan = -theta_gear_pan + theta_pan
-    shaft_torque_pan_term = -half_gap_pan * side_pan - theta_pan_minus_theta_gear_pan
+    shaft_torque_pan_factor = -half_gap_pan * side_pan - theta_pan_minus_theta_gear_pan
     shaft_torque_pan = (active_pan * (d_shaft_pan * upper_pan_by_d_shaft_pan
-        + k_shaft_pan * shaft_torque_pan_term))
+        + k_shaft_pan * shaft_torque_pan_factor))
     follower_coupling_tilt_by_theta_tilt = (cos_tilt * coupling_sin_tilt
         + coupling_cos_tilt * sin_tilt)
     force_pan_term = follower_coupling_tilt_by_theta_tilt * omega_tilt
@@ -689,10 +682,10 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     carried_tilt = (-J_motor_tilt_ratio_tilt_sq * load_torque_tilt
         + driving_torque_tilt * load_inertia_tilt)
     carried_tilt_slide_tilt = carried_tilt * slide_tilt
-    accel_pan_by_theta_gear_pan_term = -0.5 * lost_lowering_tilt + 0.5 * lost_raising_tilt
-    force_tilt_by_carried_tilt = (-slide_tilt * (accel_pan_by_theta_gear_pan_term * slide_tilt
+    accel_pan_by_theta_gear_pan_factor = -0.5 * lost_lowering_tilt + 0.5 * lost_raising_tilt
+    force_tilt_by_carried_tilt = (-slide_tilt * (accel_pan_by_theta_gear_pan_factor * slide_tilt
         + 0.5 * lost_lowering_tilt_plus_lost_raising_tilt * slide_tilt * (0.0
-        if carried_tilt_slide_tilt == 0 else math.copysign(1, carried_tilt_slide_tilt))))
+        if carried_tilt_slide_tilt == 0.0 else math.copysign(1.0, carried_tilt_slide_tilt))))
     balance_tilt_by_theta_gear_pan = carried_tilt_by_theta_gear_pan * force_tilt_by_carried_tilt
     accel_pan_by_theta_gear_pan = (inverse_determinant * (-balance_tilt_by_theta_gear_pan
         * mass_pan_tilt_slide_tilt_sq + holding_pan_by_theta_pan * mass_tilt))
@@ -712,9 +705,9 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     fx[5, 0] = -accel_gear_pan_by_theta_gear_pan  # accel_gear_pan_by_theta_pan
     abs_carried_tilt_slide_tilt = abs(carried_tilt_slide_tilt)
     half_abs_carried_tilt_slide_tilt = 0.5 * abs_carried_tilt_slide_tilt
-    transmitted_torque_tilt = driving_torque_tilt_term_2 * ratio_tilt
-    force_tilt = (-J_motor_tilt_driving_torque_tilt_term + load_torque_tilt_term
-        - slide_tilt * (accel_pan_by_theta_gear_pan_term * carried_tilt_slide_tilt
+    transmitted_torque_tilt = driving_torque_tilt_factor_2 * ratio_tilt
+    force_tilt = (-J_motor_tilt_driving_torque_tilt_factor + load_torque_tilt_term
+        - slide_tilt * (accel_pan_by_theta_gear_pan_factor * carried_tilt_slide_tilt
         + half_abs_carried_tilt_slide_tilt * lost_lowering_tilt_plus_lost_raising_tilt)
         + transmitted_torque_tilt)
     accel_pan = (inverse_determinant * (force_pan * mass_tilt
@@ -736,14 +729,14 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     length_tilt_inverse_cubed = 1.0 / (length_tilt * length_tilt * length_tilt)
     quarter_length_tilt_inverse_cubed = 0.25 * length_tilt_inverse_cubed
     length_tilt_by_theta_tilt_by_theta_tilt = (half_length_tilt_inverse
-        * ratio_tilt_by_theta_tilt_term - quarter_length_tilt_inverse_cubed
-        * (ratio_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt_term))
-    N_tilt_ratio_tilt_by_theta_tilt_term = N_tilt * ratio_tilt_by_theta_tilt_term
-    ratio_tilt_by_theta_tilt_by_theta_tilt_term = (N_tilt_ratio_tilt_by_theta_tilt_term
+        * ratio_tilt_by_theta_tilt_factor - quarter_length_tilt_inverse_cubed
+        * (ratio_tilt_by_N_tilt_factor * ratio_tilt_by_N_tilt_factor))
+    N_tilt_ratio_tilt_by_theta_tilt_factor = N_tilt * ratio_tilt_by_theta_tilt_factor
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term = (N_tilt_ratio_tilt_by_theta_tilt_factor
         * lead_tilt_inverse_pi_length_tilt_inverse_sq)
-    ratio_tilt_by_length_tilt = -N_tilt * ratio_tilt_by_theta_tilt_term_3
+    ratio_tilt_by_length_tilt = -N_tilt * ratio_tilt_by_theta_tilt_factor_3
     ratio_tilt_by_theta_tilt_by_length_tilt = (2.0 * math.pi * N_tilt * lead_tilt_inverse
-        * length_tilt_by_theta_tilt * length_tilt_inverse_cubed * ratio_tilt_by_N_tilt_term
+        * length_tilt_by_theta_tilt * length_tilt_inverse_cubed * ratio_tilt_by_N_tilt_factor
         - ratio_tilt_by_theta_tilt_by_theta_tilt_term)
     ratio_tilt_by_theta_tilt_by_theta_tilt = (length_tilt_by_theta_tilt
         * ratio_tilt_by_theta_tilt_by_length_tilt - length_tilt_by_theta_tilt
@@ -779,19 +772,21 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + carried_tilt_by_ratio_tilt * ratio_tilt_by_theta_tilt
         + driving_torque_tilt * load_inertia_tilt_by_theta_tilt
         + driving_torque_tilt_by_theta_tilt * load_inertia_tilt)
-    lost_lowering_tilt_by_theta_tilt_term = (one_minus_lowered_tilt * (0.0
-        if lost_lowering_tilt_term == 0 else math.copysign(1, lost_lowering_tilt_term))
-        / (lost_lowering_tilt_term * lost_lowering_tilt_term))
-    lost_lowering_tilt_by_load_inertia_tilt = -lost_lowering_tilt_by_theta_tilt_term * lowered_tilt
-    lost_lowering_tilt_by_ratio_tilt = (-lost_lowering_tilt_by_theta_tilt_term
+    lost_lowering_tilt_by_theta_tilt_factor = (one_minus_lowered_tilt * (0.0
+        if lost_lowering_tilt_denominator == 0.0
+        else math.copysign(1.0, lost_lowering_tilt_denominator)) / (lost_lowering_tilt_denominator
+        * lost_lowering_tilt_denominator))
+    lost_lowering_tilt_by_load_inertia_tilt = (-lost_lowering_tilt_by_theta_tilt_factor
+        * lowered_tilt)
+    lost_lowering_tilt_by_ratio_tilt = (-lost_lowering_tilt_by_theta_tilt_factor
         * twice_J_motor_tilt_ratio_tilt)
     lost_lowering_tilt_by_theta_tilt = (load_inertia_tilt_by_theta_tilt
         * lost_lowering_tilt_by_load_inertia_tilt + lost_lowering_tilt_by_ratio_tilt
         * ratio_tilt_by_theta_tilt)
-    lost_raising_tilt_by_theta_tilt_term = (raised_tilt_minus_one / (lost_raising_tilt_term
-        * lost_raising_tilt_term))
-    lost_raising_tilt_by_load_inertia_tilt = -lost_raising_tilt_by_theta_tilt_term * raised_tilt
-    lost_raising_tilt_by_ratio_tilt = (-lost_raising_tilt_by_theta_tilt_term
+    lost_raising_tilt_by_theta_tilt_factor = (raised_tilt_minus_one / (lost_raising_tilt_denominator
+        * lost_raising_tilt_denominator))
+    lost_raising_tilt_by_load_inertia_tilt = -lost_raising_tilt_by_theta_tilt_factor * raised_tilt
+    lost_raising_tilt_by_ratio_tilt = (-lost_raising_tilt_by_theta_tilt_factor
         * twice_J_motor_tilt_ratio_tilt)
     lost_raising_tilt_by_theta_tilt = (load_inertia_tilt_by_theta_tilt
         * lost_raising_tilt_by_load_inertia_tilt + lost_raising_tilt_by_ratio_tilt
@@ -842,14 +837,14 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     fx[5, 2] = follower_torque_tilt_by_omega_gear_pan * inverse_mass_gear_pan_slide_pan_sq
     fx[1, 3] = 1.0  # rate_of_theta_tilt_by_omega_tilt
     follower_torque_tilt_by_omega_tilt = -coriolis - 2.0 * force_pan_term
-    carried_tilt_by_omega_tilt_term = (2.0 * J_motor_tilt * omega_tilt_ratio_tilt
+    carried_tilt_by_omega_tilt_factor = (2.0 * J_motor_tilt * omega_tilt_ratio_tilt
         * ratio_tilt_by_theta_tilt + b_motor_tilt * ratio_tilt_sq)
     load_torque_tilt_by_omega_tilt = (-b_tilt
         - follower_torque_tilt_by_omega_tilt * mass_pan_inverse_mass_pan_tilt)
     carried_tilt_by_omega_tilt = (-J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_tilt
-        - carried_tilt_by_omega_tilt_term * load_inertia_tilt)
-    b_tilt_plus_carried_tilt_by_omega_tilt_term = b_tilt + carried_tilt_by_omega_tilt_term
-    balance_tilt_by_omega_tilt = (-b_tilt_plus_carried_tilt_by_omega_tilt_term
+        - carried_tilt_by_omega_tilt_factor * load_inertia_tilt)
+    b_tilt_plus_carried_tilt_by_omega_tilt_factor = b_tilt + carried_tilt_by_omega_tilt_factor
+    balance_tilt_by_omega_tilt = (-b_tilt_plus_carried_tilt_by_omega_tilt_factor
         + carried_tilt_by_omega_tilt * force_tilt_by_carried_tilt)
     accel_pan_by_omega_tilt = (inverse_determinant * (-balance_tilt_by_omega_tilt
         * mass_pan_tilt_slide_tilt_sq + follower_torque_tilt_by_omega_tilt * mass_tilt))
@@ -879,22 +874,22 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     one_plus_a_v_s_pan_slide_pan = a_v_s_pan * slide_pan + 1.0
     one_plus_a_v_s_pan_slide_pan_inverse_sq = (1.0 / (one_plus_a_v_s_pan_slide_pan
         * one_plus_a_v_s_pan_slide_pan))
-    stribeck_square_pan_term = one_plus_a_v_s_pan_slide_pan_inverse_sq * v_s_pan_inverse_sq
+    stribeck_square_pan_factor = one_plus_a_v_s_pan_slide_pan_inverse_sq * v_s_pan_inverse_sq
     one_plus_a_F_c_pan_slide_pan = a_F_c_pan * slide_pan + 1.0
     coulomb_torque_pan = F_c_pan * one_plus_a_F_c_pan_slide_pan
     one_plus_a_F_s_pan_slide_pan = a_F_s_pan * slide_pan + 1.0
     omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
-    stribeck_square_pan = omega_gear_pan_sq * stribeck_square_pan_term
+    stribeck_square_pan = omega_gear_pan_sq * stribeck_square_pan_factor
     exp_minus_stribeck_square_pan = math.exp(-stribeck_square_pan)
-    accel_gear_pan_by_omega_gear_pan_term = (exp_minus_stribeck_square_pan * (F_s_pan
+    accel_gear_pan_by_omega_gear_pan_factor = (exp_minus_stribeck_square_pan * (F_s_pan
         * one_plus_a_F_s_pan_slide_pan - coulomb_torque_pan))
-    twice_accel_gear_pan_by_omega_gear_pan_term = 2.0 * accel_gear_pan_by_omega_gear_pan_term
+    twice_accel_gear_pan_by_omega_gear_pan_factor = 2.0 * accel_gear_pan_by_omega_gear_pan_factor
     one_plus_a_F_v_pan_slide_pan = a_F_v_pan * slide_pan + 1.0
     viscous_coefficient_pan = F_v_pan * one_plus_a_F_v_pan_slide_pan
     # accel_gear_pan_by_omega_gear_pan
     fx[5, 5] = (inverse_mass_gear_pan_slide_pan_sq * (-follower_torque_tilt_by_omega_gear_pan
-        - slide_pan * (-omega_gear_pan * stribeck_square_pan_term
-        * twice_accel_gear_pan_by_omega_gear_pan_term + slide_pan * viscous_coefficient_pan)))
+        - slide_pan * (-omega_gear_pan * stribeck_square_pan_factor
+        * twice_accel_gear_pan_by_omega_gear_pan_factor + slide_pan * viscous_coefficient_pan)))
     rate_of_i_pan_by_u_pan = 1.0 / L_pan
     balance_gear_pan_by_i_pan = K_t_pan * N_pan
     # rate_of_i_pan_by_omega_gear_pan
@@ -902,11 +897,11 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     # accel_gear_pan_by_i_pan
     fx[5, 6] = balance_gear_pan_by_i_pan * inverse_mass_gear_pan_slide_pan_sq
     fx[6, 6] = -R_pan * rate_of_i_pan_by_u_pan  # rate_of_i_pan_by_i_pan
-    accel_pan_by_i_tilt_term = inverse_determinant * mass_pan_tilt_slide_tilt_sq
+    accel_pan_by_i_tilt_factor = inverse_determinant * mass_pan_tilt_slide_tilt_sq
     carried_tilt_by_i_tilt = driving_torque_tilt_by_i_tilt * load_inertia_tilt
     balance_tilt_by_i_tilt = (carried_tilt_by_i_tilt * force_tilt_by_carried_tilt
         + driving_torque_tilt_by_i_tilt)
-    accel_pan_by_i_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_i_tilt
+    accel_pan_by_i_tilt = -accel_pan_by_i_tilt_factor * balance_tilt_by_i_tilt
     fx[2, 7] = accel_pan_by_i_tilt
     inverse_determinant_slide_tilt_sq_mass_pan = inverse_determinant_slide_tilt_sq * mass_pan
     # accel_tilt_by_i_tilt
@@ -969,7 +964,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     balance_tilt_by_inertia_tilt = (-accel_tilt + driving_torque_tilt * force_tilt_by_carried_tilt
         + force_tilt_by_lost_lowering_tilt * lost_lowering_tilt_by_load_inertia_tilt
         + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_load_inertia_tilt)
-    accel_pan_by_inertia_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_inertia_tilt
+    accel_pan_by_inertia_tilt = -accel_pan_by_i_tilt_factor * balance_tilt_by_inertia_tilt
     fp[2, 2] = accel_pan_by_inertia_tilt  # accel_pan_by_J_y_tilt
     accel_tilt_by_inertia_tilt = (balance_tilt_by_inertia_tilt
         * inverse_determinant_slide_tilt_sq_mass_pan)
@@ -1019,11 +1014,11 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     carried_tilt_by_gravity_cos_tilt = -J_motor_tilt_ratio_tilt_sq * cos_tilt
     balance_tilt_by_gravity_cos_tilt = (carried_tilt_by_gravity_cos_tilt
         * force_tilt_by_carried_tilt + cos_tilt)
-    accel_pan_by_gravity_cos_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_gravity_cos_tilt
+    accel_pan_by_gravity_cos_tilt = -accel_pan_by_i_tilt_factor * balance_tilt_by_gravity_cos_tilt
     carried_tilt_by_gravity_sin_tilt = -J_motor_tilt_ratio_tilt_sq * sin_tilt
     balance_tilt_by_gravity_sin_tilt = (carried_tilt_by_gravity_sin_tilt
         * force_tilt_by_carried_tilt + sin_tilt)
-    accel_pan_by_gravity_sin_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_gravity_sin_tilt
+    accel_pan_by_gravity_sin_tilt = -accel_pan_by_i_tilt_factor * balance_tilt_by_gravity_sin_tilt
     coriolis_by_inertia_pan_sin_cos_tilt = (coriolis_by_inertia_pan_per_sin_tilt * cos_tilt
         - omega_pan)
     accel_pan_by_inertia_pan_sin_cos_tilt_term = coriolis_by_inertia_pan_sin_cos_tilt * omega_tilt
@@ -1142,7 +1137,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + mass_pan_tilt_slide_tilt_sq * omega_pan))  # accel_tilt_by_b_pan
     carried_tilt_by_b_tilt = J_motor_tilt_ratio_tilt_sq * omega_tilt
     balance_tilt_by_b_tilt = carried_tilt_by_b_tilt * force_tilt_by_carried_tilt - omega_tilt
-    accel_pan_by_b_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_b_tilt
+    accel_pan_by_b_tilt = -accel_pan_by_i_tilt_factor * balance_tilt_by_b_tilt
     fp[2, 12] = accel_pan_by_b_tilt
     # accel_tilt_by_b_tilt
     fp[3, 12] = balance_tilt_by_b_tilt * inverse_determinant_slide_tilt_sq_mass_pan
@@ -1150,9 +1145,10 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * one_plus_a_F_c_pan_slide_pan + one_plus_a_F_c_pan_slide_pan))  # accel_gear_pan_by_F_c_pan
     fp[5, 14] = (-exp_minus_stribeck_square_pan * inverse_mass_gear_pan_slide_pan_sq
         * one_plus_a_F_s_pan_slide_pan * slide_pan)  # accel_gear_pan_by_F_s_pan
-    accel_gear_pan_by_v_s_pan_term = omega_gear_pan_sq * twice_accel_gear_pan_by_omega_gear_pan_term
+    accel_gear_pan_by_v_s_pan_factor = (omega_gear_pan_sq
+        * twice_accel_gear_pan_by_omega_gear_pan_factor)
     # accel_gear_pan_by_v_s_pan
-    fp[5, 15] = (-accel_gear_pan_by_v_s_pan_term * inverse_mass_gear_pan_slide_pan_sq
+    fp[5, 15] = (-accel_gear_pan_by_v_s_pan_factor * inverse_mass_gear_pan_slide_pan_sq
         * one_plus_a_v_s_pan_slide_pan_inverse_sq * slide_pan / (v_s_pan * v_s_pan * v_s_pan))
     fp[5, 16] = (-inverse_mass_gear_pan_slide_pan_sq * omega_gear_pan * one_plus_a_F_v_pan_slide_pan
         * slide_pan_sq)  # accel_gear_pan_by_F_v_pan
@@ -1161,9 +1157,10 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * exp_minus_stribeck_square_pan + F_c_pan_slide_pan))  # accel_gear_pan_by_a_F_c_pan
     fp[5, 18] = (-F_s_pan * exp_minus_stribeck_square_pan * inverse_mass_gear_pan_slide_pan_sq
         * slide_pan_sq)  # accel_gear_pan_by_a_F_s_pan
-    fp[5, 19] = (-accel_gear_pan_by_v_s_pan_term * inverse_mass_gear_pan_slide_pan_sq * slide_pan_sq
-        * v_s_pan_inverse_sq / (one_plus_a_v_s_pan_slide_pan * one_plus_a_v_s_pan_slide_pan
-        * one_plus_a_v_s_pan_slide_pan))  # accel_gear_pan_by_a_v_s_pan
+    # accel_gear_pan_by_a_v_s_pan
+    fp[5, 19] = (-accel_gear_pan_by_v_s_pan_factor * inverse_mass_gear_pan_slide_pan_sq
+        * slide_pan_sq * v_s_pan_inverse_sq / (one_plus_a_v_s_pan_slide_pan
+        * one_plus_a_v_s_pan_slide_pan * one_plus_a_v_s_pan_slide_pan))
     omega_gear_pan_slide_pan = omega_gear_pan * slide_pan
     # accel_gear_pan_by_a_F_v_pan
     fp[5, 20] = -F_v_pan * inverse_mass_gear_pan_slide_pan_sq * omega_gear_pan_slide_pan
@@ -1179,7 +1176,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * mass_pan_tilt_slide_tilt_sq + balance_tilt_by_gap_pan * mass_pan))
     # accel_gear_pan_by_gap_pan
     fp[5, 21] = balance_gear_pan_by_gap_pan * inverse_mass_gear_pan_slide_pan_sq
-    balance_gear_pan_by_k_shaft_pan = -active_pan * shaft_torque_pan_term
+    balance_gear_pan_by_k_shaft_pan = -active_pan * shaft_torque_pan_factor
     load_torque_tilt_by_k_shaft_pan = (balance_gear_pan_by_k_shaft_pan
         * mass_pan_inverse_mass_pan_tilt)
     carried_tilt_by_k_shaft_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_k_shaft_pan
@@ -1214,7 +1211,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     omega_gear_pan_rate_of_i_pan_by_u_pan = omega_gear_pan * rate_of_i_pan_by_u_pan
     fp[6, 26] = -N_pan * omega_gear_pan_rate_of_i_pan_by_u_pan  # rate_of_i_pan_by_K_t_pan
     force_gear_pan = (K_t_pan * N_pan * i_pan - shaft_torque_pan
-        - slide_pan * (accel_gear_pan_by_omega_gear_pan_term + coulomb_torque_pan
+        - slide_pan * (accel_gear_pan_by_omega_gear_pan_factor + coulomb_torque_pan
         + omega_gear_pan_slide_pan * viscous_coefficient_pan))
     accel_gear_pan = force_gear_pan * inverse_mass_gear_pan_slide_pan_sq
     # accel_gear_pan_by_J_motor_pan
@@ -1229,20 +1226,20 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     carried_tilt_by_K_t_tilt = driving_torque_tilt_by_K_t_tilt * load_inertia_tilt
     balance_tilt_by_K_t_tilt = (carried_tilt_by_K_t_tilt * force_tilt_by_carried_tilt
         + driving_torque_tilt_by_K_t_tilt)
-    accel_pan_by_K_t_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_K_t_tilt
+    accel_pan_by_K_t_tilt = -accel_pan_by_i_tilt_factor * balance_tilt_by_K_t_tilt
     fp[2, 31] = accel_pan_by_K_t_tilt
     # accel_tilt_by_K_t_tilt
     fp[3, 31] = balance_tilt_by_K_t_tilt * inverse_determinant_slide_tilt_sq_mass_pan
     fp[7, 31] = -omega_tilt_ratio_tilt * rate_of_i_tilt_by_u_tilt  # rate_of_i_tilt_by_K_t_tilt
-    carried_tilt_by_J_motor_tilt = (-driving_torque_tilt_term * load_inertia_tilt
+    carried_tilt_by_J_motor_tilt = (-driving_torque_tilt_factor * load_inertia_tilt
         - load_torque_tilt * ratio_tilt_sq)
-    lost_lowering_tilt_by_J_motor_tilt = -lost_lowering_tilt_by_theta_tilt_term * ratio_tilt_sq
-    lost_raising_tilt_by_J_motor_tilt = -lost_raising_tilt_by_theta_tilt_term * ratio_tilt_sq
+    lost_lowering_tilt_by_J_motor_tilt = -lost_lowering_tilt_by_theta_tilt_factor * ratio_tilt_sq
+    lost_raising_tilt_by_J_motor_tilt = -lost_raising_tilt_by_theta_tilt_factor * ratio_tilt_sq
     balance_tilt_by_J_motor_tilt = (-accel_tilt * ratio_tilt_sq
-        + carried_tilt_by_J_motor_tilt * force_tilt_by_carried_tilt - driving_torque_tilt_term
+        + carried_tilt_by_J_motor_tilt * force_tilt_by_carried_tilt - driving_torque_tilt_factor
         + force_tilt_by_lost_lowering_tilt * lost_lowering_tilt_by_J_motor_tilt
         + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_J_motor_tilt)
-    accel_pan_by_J_motor_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_J_motor_tilt
+    accel_pan_by_J_motor_tilt = -accel_pan_by_i_tilt_factor * balance_tilt_by_J_motor_tilt
     fp[2, 32] = accel_pan_by_J_motor_tilt
     # accel_tilt_by_J_motor_tilt
     fp[3, 32] = balance_tilt_by_J_motor_tilt * inverse_determinant_slide_tilt_sq_mass_pan
@@ -1250,12 +1247,12 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     carried_tilt_by_b_motor_tilt = -load_inertia_tilt * omega_tilt_ratio_tilt_sq
     balance_tilt_by_b_motor_tilt = (carried_tilt_by_b_motor_tilt * force_tilt_by_carried_tilt
         - omega_tilt_ratio_tilt_sq)
-    accel_pan_by_b_motor_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_b_motor_tilt
+    accel_pan_by_b_motor_tilt = -accel_pan_by_i_tilt_factor * balance_tilt_by_b_motor_tilt
     fp[2, 33] = accel_pan_by_b_motor_tilt
     # accel_tilt_by_b_motor_tilt
     fp[3, 33] = balance_tilt_by_b_motor_tilt * inverse_determinant_slide_tilt_sq_mass_pan
-    ratio_tilt_by_theta_tilt_by_N_tilt = (ratio_tilt_by_theta_tilt_term_2
-        - ratio_tilt_by_theta_tilt_term_4)
+    ratio_tilt_by_theta_tilt_by_N_tilt = (ratio_tilt_by_theta_tilt_factor_2
+        - ratio_tilt_by_theta_tilt_factor_4)
     driving_torque_tilt_by_N_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
         * ratio_tilt_by_theta_tilt_by_N_tilt + force_tilt_by_ratio_tilt * ratio_tilt_by_N_tilt)
     carried_tilt_by_N_tilt = (carried_tilt_by_ratio_tilt * ratio_tilt_by_N_tilt
@@ -1266,45 +1263,45 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + carried_tilt_by_N_tilt * force_tilt_by_carried_tilt + driving_torque_tilt_by_N_tilt
         + force_tilt_by_lost_lowering_tilt * lost_lowering_tilt_by_N_tilt
         + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_N_tilt)
-    accel_pan_by_N_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_N_tilt
+    accel_pan_by_N_tilt = -accel_pan_by_i_tilt_factor * balance_tilt_by_N_tilt
     fp[2, 34] = accel_pan_by_N_tilt
     # accel_tilt_by_N_tilt
     fp[3, 34] = balance_tilt_by_N_tilt * inverse_determinant_slide_tilt_sq_mass_pan
     # rate_of_i_tilt_by_N_tilt
     fp[7, 34] = -K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_N_tilt
-    lost_lowering_tilt_by_lowered_tilt = (-abs_lost_lowering_tilt_term_inverse
-        - load_inertia_tilt * lost_lowering_tilt_by_theta_tilt_term)
+    lost_lowering_tilt_by_lowered_tilt = (-abs_lost_lowering_tilt_denominator_inverse
+        - load_inertia_tilt * lost_lowering_tilt_by_theta_tilt_factor)
     balance_tilt_by_lowered_tilt = (force_tilt_by_lost_lowering_tilt
         * lost_lowering_tilt_by_lowered_tilt)
-    accel_pan_by_lowered_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_lowered_tilt
-    lost_raising_tilt_by_raised_tilt = (-load_inertia_tilt * lost_raising_tilt_by_theta_tilt_term
-        + lost_raising_tilt_term_inverse)
+    accel_pan_by_lowered_tilt = -accel_pan_by_i_tilt_factor * balance_tilt_by_lowered_tilt
+    lost_raising_tilt_by_raised_tilt = (-load_inertia_tilt * lost_raising_tilt_by_theta_tilt_factor
+        + lost_raising_tilt_denominator_inverse)
     balance_tilt_by_raised_tilt = force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_raised_tilt
-    accel_pan_by_raised_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_raised_tilt
-    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
-    lowered_tilt_by_lead_tilt_term = (1.0 / (d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt
+    accel_pan_by_raised_tilt = -accel_pan_by_i_tilt_factor * balance_tilt_by_raised_tilt
+    lead_tilt_inverse_lowered_tilt_factor = lead_tilt_inverse * lowered_tilt_factor
+    lowered_tilt_by_lead_tilt_factor = (1.0 / (d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt
         * d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt))
     lead_tilt_inverse_sq = 1.0 / (lead_tilt * lead_tilt)
     d_screw_tilt_pi_lead_tilt_inverse_sq = d_screw_tilt_pi * lead_tilt_inverse_sq
-    lowered_tilt_by_lead_tilt = (d_screw_tilt_pi * lead_tilt_inverse_lowered_tilt_term
+    lowered_tilt_by_lead_tilt = (d_screw_tilt_pi * lead_tilt_inverse_lowered_tilt_factor
         + d_screw_tilt_pi_f_screw_tilt * d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt
-        * lead_tilt_inverse * lowered_tilt_by_lead_tilt_term + d_screw_tilt_pi_lead_tilt_inverse_sq
-        * lowered_tilt_term_2)
-    lead_tilt_inverse_raised_tilt_term = lead_tilt_inverse * raised_tilt_term
-    raised_tilt_by_lead_tilt_term = (d_screw_tilt_pi_f_screw_tilt_plus_lead_tilt
+        * lead_tilt_inverse * lowered_tilt_by_lead_tilt_factor
+        + d_screw_tilt_pi_lead_tilt_inverse_sq * lowered_tilt_factor_2)
+    lead_tilt_inverse_raised_tilt_factor = lead_tilt_inverse * raised_tilt_factor
+    raised_tilt_by_lead_tilt_factor = (d_screw_tilt_pi_f_screw_tilt_plus_lead_tilt
         / (d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt
         * d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt))
-    raised_tilt_by_lead_tilt_term_2 = lead_tilt_inverse * raised_tilt_by_lead_tilt_term
-    raised_tilt_by_lead_tilt = (d_screw_tilt_pi * lead_tilt_inverse_raised_tilt_term
-        + d_screw_tilt_pi_f_screw_tilt * raised_tilt_by_lead_tilt_term_2
-        - d_screw_tilt_pi_lead_tilt_inverse_sq * raised_tilt_term_2)
+    raised_tilt_by_lead_tilt_factor_2 = lead_tilt_inverse * raised_tilt_by_lead_tilt_factor
+    raised_tilt_by_lead_tilt = (d_screw_tilt_pi * lead_tilt_inverse_raised_tilt_factor
+        + d_screw_tilt_pi_f_screw_tilt * raised_tilt_by_lead_tilt_factor_2
+        - d_screw_tilt_pi_lead_tilt_inverse_sq * raised_tilt_factor_2)
     lead_tilt_inverse_sq_length_tilt_inverse_pi = (math.pi * lead_tilt_inverse_sq
         * length_tilt_inverse)
     ratio_tilt_by_lead_tilt = (-N_tilt * lead_tilt_inverse_sq_length_tilt_inverse_pi
-        * ratio_tilt_by_N_tilt_term)
+        * ratio_tilt_by_N_tilt_factor)
     ratio_tilt_by_theta_tilt_by_lead_tilt = (math.pi * N_tilt * lead_tilt_inverse_sq
-        * length_tilt_by_theta_tilt * length_tilt_inverse_sq * ratio_tilt_by_N_tilt_term
-        - N_tilt_ratio_tilt_by_theta_tilt_term * lead_tilt_inverse_sq_length_tilt_inverse_pi)
+        * length_tilt_by_theta_tilt * length_tilt_inverse_sq * ratio_tilt_by_N_tilt_factor
+        - N_tilt_ratio_tilt_by_theta_tilt_factor * lead_tilt_inverse_sq_length_tilt_inverse_pi)
     driving_torque_tilt_by_lead_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
         * ratio_tilt_by_theta_tilt_by_lead_tilt + force_tilt_by_ratio_tilt
         * ratio_tilt_by_lead_tilt)
@@ -1316,7 +1313,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + carried_tilt_by_lead_tilt * force_tilt_by_carried_tilt + driving_torque_tilt_by_lead_tilt
         + force_tilt_by_lost_lowering_tilt * lost_lowering_tilt_by_lead_tilt
         + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_lead_tilt)
-    accel_pan_by_lead_tilt = (-accel_pan_by_i_tilt_term * balance_tilt_by_lead_tilt
+    accel_pan_by_lead_tilt = (-accel_pan_by_i_tilt_factor * balance_tilt_by_lead_tilt
         + accel_pan_by_lowered_tilt * lowered_tilt_by_lead_tilt
         + accel_pan_by_raised_tilt * raised_tilt_by_lead_tilt)
     fp[2, 35] = accel_pan_by_lead_tilt
@@ -1334,11 +1331,11 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     d_screw_tilt_pi_sq_f_screw_tilt = d_screw_tilt_pi_sq * f_screw_tilt
     lowered_tilt_by_d_screw_tilt = ((math.pi * math.pi) * d_screw_tilt
         * d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt * lead_tilt_inverse
-        * lowered_tilt_by_lead_tilt_term - d_screw_tilt_pi_sq_f_screw_tilt
-        * lead_tilt_inverse_lowered_tilt_term - lead_tilt_inverse_pi * lowered_tilt_term_2)
-    raised_tilt_by_d_screw_tilt = (-d_screw_tilt_pi_sq * raised_tilt_by_lead_tilt_term_2
-        + d_screw_tilt_pi_sq_f_screw_tilt * lead_tilt_inverse_raised_tilt_term
-        + lead_tilt_inverse_pi * raised_tilt_term_2)
+        * lowered_tilt_by_lead_tilt_factor - d_screw_tilt_pi_sq_f_screw_tilt
+        * lead_tilt_inverse_lowered_tilt_factor - lead_tilt_inverse_pi * lowered_tilt_factor_2)
+    raised_tilt_by_d_screw_tilt = (-d_screw_tilt_pi_sq * raised_tilt_by_lead_tilt_factor_2
+        + d_screw_tilt_pi_sq_f_screw_tilt * lead_tilt_inverse_raised_tilt_factor
+        + lead_tilt_inverse_pi * raised_tilt_factor_2)
     accel_pan_by_d_screw_tilt = (accel_pan_by_lowered_tilt * lowered_tilt_by_d_screw_tilt
         + accel_pan_by_raised_tilt * raised_tilt_by_d_screw_tilt)
     fp[2, 36] = accel_pan_by_d_screw_tilt
@@ -1346,30 +1343,31 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + accel_tilt_by_raised_tilt * raised_tilt_by_d_screw_tilt)  # accel_tilt_by_d_screw_tilt
     d_screw_tilt_sq_pi_sq = (math.pi * math.pi) * (d_screw_tilt * d_screw_tilt)
     lowered_tilt_by_f_screw_tilt = (math.pi * d_screw_tilt
-        * d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt * lowered_tilt_by_lead_tilt_term
-        - d_screw_tilt_sq_pi_sq * lead_tilt_inverse_lowered_tilt_term)
-    raised_tilt_by_f_screw_tilt = (d_screw_tilt_pi * raised_tilt_by_lead_tilt_term
-        + d_screw_tilt_sq_pi_sq * lead_tilt_inverse_raised_tilt_term)
+        * d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt * lowered_tilt_by_lead_tilt_factor
+        - d_screw_tilt_sq_pi_sq * lead_tilt_inverse_lowered_tilt_factor)
+    raised_tilt_by_f_screw_tilt = (d_screw_tilt_pi * raised_tilt_by_lead_tilt_factor
+        + d_screw_tilt_sq_pi_sq * lead_tilt_inverse_raised_tilt_factor)
     accel_pan_by_f_screw_tilt = (accel_pan_by_lowered_tilt * lowered_tilt_by_f_screw_tilt
         + accel_pan_by_raised_tilt * raised_tilt_by_f_screw_tilt)
     fp[2, 37] = accel_pan_by_f_screw_tilt
     fp[3, 37] = (accel_tilt_by_lowered_tilt * lowered_tilt_by_f_screw_tilt
         + accel_tilt_by_raised_tilt * raised_tilt_by_f_screw_tilt)  # accel_tilt_by_f_screw_tilt
     cos_tilt_half_length_tilt_inverse = cos_tilt * half_length_tilt_inverse
-    ratio_tilt_by_linkage_cos_tilt_term = N_tilt * lead_tilt_inverse_pi_length_tilt_inverse
-    ratio_tilt_by_linkage_cos_tilt_term_sin_tilt = ratio_tilt_by_linkage_cos_tilt_term * sin_tilt
+    ratio_tilt_by_linkage_cos_tilt_factor = N_tilt * lead_tilt_inverse_pi_length_tilt_inverse
+    ratio_tilt_by_linkage_cos_tilt_term = ratio_tilt_by_linkage_cos_tilt_factor * sin_tilt
     ratio_tilt_by_linkage_cos_tilt = (-cos_tilt_half_length_tilt_inverse * ratio_tilt_by_length_tilt
-        + ratio_tilt_by_linkage_cos_tilt_term_sin_tilt)
+        + ratio_tilt_by_linkage_cos_tilt_term)
     half_length_tilt_inverse_sin_tilt = half_length_tilt_inverse * sin_tilt
     length_tilt_by_theta_tilt_by_linkage_cos_tilt = (cos_tilt * quarter_length_tilt_inverse_cubed
-        * ratio_tilt_by_N_tilt_term + half_length_tilt_inverse_sin_tilt)
-    cos_tilt_ratio_tilt_by_linkage_cos_tilt_term = cos_tilt * ratio_tilt_by_linkage_cos_tilt_term
-    ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term = (N_tilt
+        * ratio_tilt_by_N_tilt_factor + half_length_tilt_inverse_sin_tilt)
+    ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term = (cos_tilt
+        * ratio_tilt_by_linkage_cos_tilt_factor)
+    ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_factor = (N_tilt
         * lead_tilt_inverse_pi_length_tilt_inverse_sq * length_tilt_by_theta_tilt)
     ratio_tilt_by_theta_tilt_by_linkage_cos_tilt = (-cos_tilt_half_length_tilt_inverse
-        * ratio_tilt_by_theta_tilt_by_length_tilt + cos_tilt_ratio_tilt_by_linkage_cos_tilt_term
-        + length_tilt_by_theta_tilt_by_linkage_cos_tilt * ratio_tilt_by_length_tilt
-        - ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term * sin_tilt)
+        * ratio_tilt_by_theta_tilt_by_length_tilt + length_tilt_by_theta_tilt_by_linkage_cos_tilt
+        * ratio_tilt_by_length_tilt - ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_factor * sin_tilt
+        + ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term)
     driving_torque_tilt_by_linkage_cos_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
         * ratio_tilt_by_theta_tilt_by_linkage_cos_tilt + force_tilt_by_ratio_tilt
         * ratio_tilt_by_linkage_cos_tilt)
@@ -1384,15 +1382,15 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * force_tilt_by_carried_tilt + driving_torque_tilt_by_linkage_cos_tilt
         + force_tilt_by_lost_lowering_tilt * lost_lowering_tilt_by_linkage_cos_tilt
         + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_linkage_cos_tilt)
-    accel_pan_by_linkage_cos_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_linkage_cos_tilt
-    ratio_tilt_by_linkage_sin_tilt = (-cos_tilt_ratio_tilt_by_linkage_cos_tilt_term
-        - half_length_tilt_inverse_sin_tilt * ratio_tilt_by_length_tilt)
+    accel_pan_by_linkage_cos_tilt = -accel_pan_by_i_tilt_factor * balance_tilt_by_linkage_cos_tilt
+    ratio_tilt_by_linkage_sin_tilt = (-half_length_tilt_inverse_sin_tilt * ratio_tilt_by_length_tilt
+        - ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term)
     length_tilt_by_theta_tilt_by_linkage_sin_tilt = (-cos_tilt_half_length_tilt_inverse
-        + 0.25 * length_tilt_inverse_cubed * ratio_tilt_by_N_tilt_term * sin_tilt)
+        + 0.25 * length_tilt_inverse_cubed * ratio_tilt_by_N_tilt_factor * sin_tilt)
     ratio_tilt_by_theta_tilt_by_linkage_sin_tilt = (cos_tilt
-        * ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term - half_length_tilt_inverse_sin_tilt
+        * ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_factor - half_length_tilt_inverse_sin_tilt
         * ratio_tilt_by_theta_tilt_by_length_tilt + length_tilt_by_theta_tilt_by_linkage_sin_tilt
-        * ratio_tilt_by_length_tilt + ratio_tilt_by_linkage_cos_tilt_term_sin_tilt)
+        * ratio_tilt_by_length_tilt + ratio_tilt_by_linkage_cos_tilt_term)
     driving_torque_tilt_by_linkage_sin_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
         * ratio_tilt_by_theta_tilt_by_linkage_sin_tilt + force_tilt_by_ratio_tilt
         * ratio_tilt_by_linkage_sin_tilt)
@@ -1407,7 +1405,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * force_tilt_by_carried_tilt + driving_torque_tilt_by_linkage_sin_tilt
         + force_tilt_by_lost_lowering_tilt * lost_lowering_tilt_by_linkage_sin_tilt
         + force_tilt_by_lost_raising_tilt * lost_raising_tilt_by_linkage_sin_tilt)
-    accel_pan_by_linkage_sin_tilt = -accel_pan_by_i_tilt_term * balance_tilt_by_linkage_sin_tilt
+    accel_pan_by_linkage_sin_tilt = -accel_pan_by_i_tilt_factor * balance_tilt_by_linkage_sin_tilt
     linkage_cos_tilt_by_l_ground_tilt = 2.0 * l_ground_tilt
     linkage_sin_tilt_inverse = 1.0 / linkage_sin_tilt
     linkage_cos_tilt_linkage_sin_tilt_inverse = linkage_cos_tilt * linkage_sin_tilt_inverse
@@ -1416,10 +1414,10 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * linkage_cos_tilt_linkage_sin_tilt_inverse)
     length_tilt_by_l_ground_tilt = l_ground_tilt * length_tilt_inverse
     ratio_tilt_by_l_ground_tilt = length_tilt_by_l_ground_tilt * ratio_tilt_by_length_tilt
-    length_tilt_by_theta_tilt_by_l_ground_tilt_term = (0.5 * length_tilt_inverse_cubed
-        * ratio_tilt_by_N_tilt_term)
+    length_tilt_by_theta_tilt_by_l_ground_tilt_factor = (0.5 * length_tilt_inverse_cubed
+        * ratio_tilt_by_N_tilt_factor)
     length_tilt_by_theta_tilt_by_l_ground_tilt = (-l_ground_tilt
-        * length_tilt_by_theta_tilt_by_l_ground_tilt_term)
+        * length_tilt_by_theta_tilt_by_l_ground_tilt_factor)
     ratio_tilt_by_theta_tilt_by_l_ground_tilt = (length_tilt_by_l_ground_tilt
         * ratio_tilt_by_theta_tilt_by_length_tilt + length_tilt_by_theta_tilt_by_l_ground_tilt
         * ratio_tilt_by_length_tilt)
@@ -1437,7 +1435,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + driving_torque_tilt_by_l_ground_tilt + force_tilt_by_lost_lowering_tilt
         * lost_lowering_tilt_by_l_ground_tilt + force_tilt_by_lost_raising_tilt
         * lost_raising_tilt_by_l_ground_tilt)
-    accel_pan_by_l_ground_tilt = (-accel_pan_by_i_tilt_term * balance_tilt_by_l_ground_tilt
+    accel_pan_by_l_ground_tilt = (-accel_pan_by_i_tilt_factor * balance_tilt_by_l_ground_tilt
         + accel_pan_by_linkage_cos_tilt * linkage_cos_tilt_by_l_ground_tilt
         + accel_pan_by_linkage_sin_tilt * linkage_sin_tilt_by_l_ground_tilt)
     fp[2, 38] = accel_pan_by_l_ground_tilt
@@ -1449,14 +1447,14 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     fp[3, 38] = (accel_tilt_by_linkage_cos_tilt * linkage_cos_tilt_by_l_ground_tilt
         + accel_tilt_by_linkage_sin_tilt * linkage_sin_tilt_by_l_ground_tilt
         + balance_tilt_by_l_ground_tilt * inverse_determinant_slide_tilt_sq_mass_pan)
-    rate_of_i_tilt_by_l_ground_tilt_term = (K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt
+    rate_of_i_tilt_by_l_ground_tilt_factor = (K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt
         * ratio_tilt_by_linkage_cos_tilt)
-    rate_of_i_tilt_by_l_ground_tilt_term_2 = (K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt
+    rate_of_i_tilt_by_l_ground_tilt_factor_2 = (K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt
         * ratio_tilt_by_linkage_sin_tilt)
     # rate_of_i_tilt_by_l_ground_tilt
     fp[7, 38] = (-K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_l_ground_tilt
-        - linkage_cos_tilt_by_l_ground_tilt * rate_of_i_tilt_by_l_ground_tilt_term
-        - linkage_sin_tilt_by_l_ground_tilt * rate_of_i_tilt_by_l_ground_tilt_term_2)
+        - linkage_cos_tilt_by_l_ground_tilt * rate_of_i_tilt_by_l_ground_tilt_factor
+        - linkage_sin_tilt_by_l_ground_tilt * rate_of_i_tilt_by_l_ground_tilt_factor_2)
     linkage_cos_tilt_by_l_min_tilt = -2.0 * l_min_tilt_plus_s_start_tilt
     linkage_sin_tilt_by_l_min_tilt = (-linkage_cos_tilt_by_l_min_tilt
         * linkage_cos_tilt_linkage_sin_tilt_inverse)
@@ -1467,15 +1465,15 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + accel_tilt_by_linkage_sin_tilt * linkage_sin_tilt_by_l_min_tilt)
     fp[3, 39] = accel_tilt_by_l_min_tilt
     rate_of_i_tilt_by_l_min_tilt = (-linkage_cos_tilt_by_l_min_tilt
-        * rate_of_i_tilt_by_l_ground_tilt_term - linkage_sin_tilt_by_l_min_tilt
-        * rate_of_i_tilt_by_l_ground_tilt_term_2)
+        * rate_of_i_tilt_by_l_ground_tilt_factor - linkage_sin_tilt_by_l_min_tilt
+        * rate_of_i_tilt_by_l_ground_tilt_factor_2)
     fp[7, 39] = rate_of_i_tilt_by_l_min_tilt
     linkage_cos_tilt_by_r_arm_tilt = 2.0 * r_arm_tilt
     linkage_sin_tilt_by_r_arm_tilt = (4.0 * l_ground_tilt_sq * linkage_sin_tilt_inverse * r_arm_tilt
         - linkage_cos_tilt_by_r_arm_tilt * linkage_cos_tilt_linkage_sin_tilt_inverse)
     length_tilt_by_r_arm_tilt = length_tilt_inverse * r_arm_tilt
     ratio_tilt_by_r_arm_tilt = length_tilt_by_r_arm_tilt * ratio_tilt_by_length_tilt
-    length_tilt_by_theta_tilt_by_r_arm_tilt = (-length_tilt_by_theta_tilt_by_l_ground_tilt_term
+    length_tilt_by_theta_tilt_by_r_arm_tilt = (-length_tilt_by_theta_tilt_by_l_ground_tilt_factor
         * r_arm_tilt)
     ratio_tilt_by_theta_tilt_by_r_arm_tilt = (length_tilt_by_r_arm_tilt
         * ratio_tilt_by_theta_tilt_by_length_tilt + length_tilt_by_theta_tilt_by_r_arm_tilt
@@ -1492,7 +1490,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + driving_torque_tilt_by_r_arm_tilt + force_tilt_by_lost_lowering_tilt
         * lost_lowering_tilt_by_r_arm_tilt + force_tilt_by_lost_raising_tilt
         * lost_raising_tilt_by_r_arm_tilt)
-    accel_pan_by_r_arm_tilt = (-accel_pan_by_i_tilt_term * balance_tilt_by_r_arm_tilt
+    accel_pan_by_r_arm_tilt = (-accel_pan_by_i_tilt_factor * balance_tilt_by_r_arm_tilt
         + accel_pan_by_linkage_cos_tilt * linkage_cos_tilt_by_r_arm_tilt
         + accel_pan_by_linkage_sin_tilt * linkage_sin_tilt_by_r_arm_tilt)
     fp[2, 40] = accel_pan_by_r_arm_tilt
@@ -1502,8 +1500,8 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + balance_tilt_by_r_arm_tilt * inverse_determinant_slide_tilt_sq_mass_pan)
     # rate_of_i_tilt_by_r_arm_tilt
     fp[7, 40] = (-K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_r_arm_tilt
-        - linkage_cos_tilt_by_r_arm_tilt * rate_of_i_tilt_by_l_ground_tilt_term
-        - linkage_sin_tilt_by_r_arm_tilt * rate_of_i_tilt_by_l_ground_tilt_term_2)
+        - linkage_cos_tilt_by_r_arm_tilt * rate_of_i_tilt_by_l_ground_tilt_factor
+        - linkage_sin_tilt_by_r_arm_tilt * rate_of_i_tilt_by_l_ground_tilt_factor_2)
     fp[2, 41] = accel_pan_by_l_min_tilt  # accel_pan_by_s_start_tilt
     fp[3, 41] = accel_tilt_by_l_min_tilt  # accel_tilt_by_s_start_tilt
     fp[7, 41] = rate_of_i_tilt_by_l_min_tilt  # rate_of_i_tilt_by_s_start_tilt
@@ -1516,17 +1514,17 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         return
     gx[0, 0] = holding_pan_by_theta_pan
     gx[3, 0] = accel_pan_by_theta_gear_pan * mass_pan_tilt  # holding_tilt_by_theta_pan
-    sign_load_torque_tilt = 0.0 if load_torque_tilt == 0 else math.copysign(1, load_torque_tilt)
+    sign_load_torque_tilt = 0.0 if load_torque_tilt == 0.0 else math.copysign(1.0, load_torque_tilt)
     raised_tilt_minus_lowered_tilt = -lowered_tilt + raised_tilt
     forward_tilt_by_theta_pan_term = 0.5 * lowered_tilt + 0.5 * raised_tilt - 1.0
-    forward_tilt_by_theta_pan_term_2 = (-forward_tilt_by_theta_pan_term
+    forward_tilt_by_theta_pan_factor = (-forward_tilt_by_theta_pan_term
         + 0.5 * raised_tilt_minus_lowered_tilt * sign_load_torque_tilt)
-    forward_tilt_by_theta_gear_pan = (forward_tilt_by_theta_pan_term_2
+    forward_tilt_by_theta_gear_pan = (forward_tilt_by_theta_pan_factor
         * load_torque_tilt_by_theta_gear_pan)
     gx[4, 0] = -forward_tilt_by_theta_gear_pan  # forward_tilt_by_theta_pan
-    backward_tilt_by_theta_pan_term = (forward_tilt_by_theta_pan_term
+    backward_tilt_by_theta_pan_factor = (forward_tilt_by_theta_pan_term
         + 0.5 * raised_tilt_minus_lowered_tilt * sign_load_torque_tilt)
-    backward_tilt_by_theta_gear_pan = (backward_tilt_by_theta_pan_term
+    backward_tilt_by_theta_gear_pan = (backward_tilt_by_theta_pan_factor
         * load_torque_tilt_by_theta_gear_pan)
     gx[5, 0] = -backward_tilt_by_theta_gear_pan  # backward_tilt_by_theta_pan
     gx[6, 0] = -1.0  # separation_pan_by_theta_pan
@@ -1538,25 +1536,25 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + 0.5 * coriolis_by_theta_tilt * omega_pan + cos_tilt * gravity_sin_tilt
         + force_tilt_by_ratio_tilt * ratio_tilt_by_theta_tilt - gravity_cos_tilt_sin_tilt)
     # forward_tilt_by_theta_tilt
-    gx[4, 1] = forward_tilt_by_theta_pan_term_2 * load_torque_tilt_by_theta_tilt
+    gx[4, 1] = forward_tilt_by_theta_pan_factor * load_torque_tilt_by_theta_tilt
     # backward_tilt_by_theta_tilt
-    gx[5, 1] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_theta_tilt
+    gx[5, 1] = backward_tilt_by_theta_pan_factor * load_torque_tilt_by_theta_tilt
     gx[0, 2] = follower_torque_tilt_by_omega_gear_pan  # holding_pan_by_omega_pan
     # holding_tilt_by_omega_pan
     gx[3, 2] = (-accel_pan_by_omega_pan * mass_pan_tilt
         + coriolis_by_omega_pan * force_tilt_by_coriolis + half_coriolis)
     # forward_tilt_by_omega_pan
-    gx[4, 2] = forward_tilt_by_theta_pan_term_2 * load_torque_tilt_by_omega_pan
+    gx[4, 2] = forward_tilt_by_theta_pan_factor * load_torque_tilt_by_omega_pan
     # backward_tilt_by_omega_pan
-    gx[5, 2] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_omega_pan
+    gx[5, 2] = backward_tilt_by_theta_pan_factor * load_torque_tilt_by_omega_pan
     gx[8, 2] = -d_shaft_pan  # upper_pan_by_omega_pan
     gx[9, 2] = -d_shaft_pan  # lower_pan_by_omega_pan
     gx[3, 3] = (-accel_pan_by_omega_tilt * mass_pan_tilt
-        - b_tilt_plus_carried_tilt_by_omega_tilt_term)  # holding_tilt_by_omega_tilt
+        - b_tilt_plus_carried_tilt_by_omega_tilt_factor)  # holding_tilt_by_omega_tilt
     # forward_tilt_by_omega_tilt
-    gx[4, 3] = forward_tilt_by_theta_pan_term_2 * load_torque_tilt_by_omega_tilt
+    gx[4, 3] = forward_tilt_by_theta_pan_factor * load_torque_tilt_by_omega_tilt
     # backward_tilt_by_omega_tilt
-    gx[5, 3] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_omega_tilt
+    gx[5, 3] = backward_tilt_by_theta_pan_factor * load_torque_tilt_by_omega_tilt
     gx[0, 4] = -holding_pan_by_theta_pan  # holding_pan_by_theta_gear_pan
     gx[3, 4] = -accel_pan_by_theta_gear_pan * mass_pan_tilt  # holding_tilt_by_theta_gear_pan
     gx[4, 4] = forward_tilt_by_theta_gear_pan
@@ -1567,28 +1565,28 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     gx[0, 5] = -follower_torque_tilt_by_omega_gear_pan  # holding_pan_by_omega_gear_pan
     gx[3, 5] = -accel_pan_by_omega_gear_pan * mass_pan_tilt  # holding_tilt_by_omega_gear_pan
     # forward_tilt_by_omega_gear_pan
-    gx[4, 5] = forward_tilt_by_theta_pan_term_2 * load_torque_tilt_by_omega_gear_pan
+    gx[4, 5] = forward_tilt_by_theta_pan_factor * load_torque_tilt_by_omega_gear_pan
     # backward_tilt_by_omega_gear_pan
-    gx[5, 5] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_omega_gear_pan
+    gx[5, 5] = backward_tilt_by_theta_pan_factor * load_torque_tilt_by_omega_gear_pan
     gx[8, 5] = d_shaft_pan  # upper_pan_by_omega_gear_pan
     gx[9, 5] = d_shaft_pan  # lower_pan_by_omega_gear_pan
     gx[0, 6] = balance_gear_pan_by_i_pan  # holding_pan_by_i_pan
     # holding_tilt_by_i_tilt
     gx[3, 7] = -accel_pan_by_i_tilt * mass_pan_tilt + driving_torque_tilt_by_i_tilt
     gp[3, 0] = -accel_pan_by_inertia_pan * mass_pan_tilt  # holding_tilt_by_J_pan
-    forward_tilt_by_J_pan = (forward_tilt_by_theta_pan_term_2
+    forward_tilt_by_J_pan = (forward_tilt_by_theta_pan_factor
         * load_torque_tilt_by_follower_inertia_tilt)
     gp[4, 0] = forward_tilt_by_J_pan
-    backward_tilt_by_J_pan = (backward_tilt_by_theta_pan_term
+    backward_tilt_by_J_pan = (backward_tilt_by_theta_pan_factor
         * load_torque_tilt_by_follower_inertia_tilt)
     gp[5, 0] = backward_tilt_by_J_pan
     holding_tilt_by_J_x_tilt = (-accel_pan_by_inertia_pan_sin_sq_tilt * mass_pan_tilt
         + load_torque_tilt_by_inertia_pan_sin_sq_tilt_term)
     gp[3, 1] = holding_tilt_by_J_x_tilt
-    forward_tilt_by_J_x_tilt = (forward_tilt_by_theta_pan_term_2
+    forward_tilt_by_J_x_tilt = (forward_tilt_by_theta_pan_factor
         * load_torque_tilt_by_inertia_pan_sin_sq_tilt)
     gp[4, 1] = forward_tilt_by_J_x_tilt
-    backward_tilt_by_J_x_tilt = (backward_tilt_by_theta_pan_term
+    backward_tilt_by_J_x_tilt = (backward_tilt_by_theta_pan_factor
         * load_torque_tilt_by_inertia_pan_sin_sq_tilt)
     gp[5, 1] = backward_tilt_by_J_x_tilt
     holding_tilt_by_J_y_tilt = -accel_pan_by_inertia_tilt * mass_pan_tilt
@@ -1597,10 +1595,10 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         - load_torque_tilt_by_inertia_pan_sin_sq_tilt_term)
     gp[3, 3] = holding_tilt_by_J_z_tilt
     forward_tilt_by_J_z_tilt = (-forward_tilt_by_J_x_tilt
-        + forward_tilt_by_theta_pan_term_2 * load_torque_tilt_by_follower_inertia_tilt)
+        + forward_tilt_by_theta_pan_factor * load_torque_tilt_by_follower_inertia_tilt)
     gp[4, 3] = forward_tilt_by_J_z_tilt
     backward_tilt_by_J_z_tilt = (-backward_tilt_by_J_x_tilt
-        + backward_tilt_by_theta_pan_term * load_torque_tilt_by_follower_inertia_tilt)
+        + backward_tilt_by_theta_pan_factor * load_torque_tilt_by_follower_inertia_tilt)
     gp[5, 3] = backward_tilt_by_J_z_tilt
     # holding_tilt_by_m_payload
     gp[3, 4] = (-accel_pan * (-cos_tilt * coupling_cos_tilt_by_m_payload
@@ -1609,29 +1607,29 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + inertia_pan_sin_cos_tilt_by_m_payload * load_torque_tilt_by_inertia_pan_sin_cos_tilt_term
         + inertia_pan_sin_sq_tilt_by_m_payload * load_torque_tilt_by_inertia_pan_sin_sq_tilt_term)
     cos_tilt_gravity_cos_tilt_by_m_payload = cos_tilt * gravity_cos_tilt_by_m_payload
-    forward_tilt_by_m_payload_term = (coupling_cos_tilt_by_m_payload
+    forward_tilt_by_m_payload_factor = (coupling_cos_tilt_by_m_payload
         * load_torque_tilt_by_coupling_cos_tilt)
-    forward_tilt_by_m_payload_term_2 = (coupling_sin_tilt_by_m_payload
+    forward_tilt_by_m_payload_factor_2 = (coupling_sin_tilt_by_m_payload
         * load_torque_tilt_by_coupling_sin_tilt)
     gravity_sin_tilt_by_m_payload_sin_tilt = gravity_sin_tilt_by_m_payload * sin_tilt
-    forward_tilt_by_m_payload_term_3 = (inertia_pan_sin_cos_tilt_by_m_payload
+    forward_tilt_by_m_payload_factor_3 = (inertia_pan_sin_cos_tilt_by_m_payload
         * load_torque_tilt_by_inertia_pan_sin_cos_tilt)
     # forward_tilt_by_m_payload
-    gp[4, 4] = (cos_tilt_gravity_cos_tilt_by_m_payload * forward_tilt_by_theta_pan_term_2
+    gp[4, 4] = (cos_tilt_gravity_cos_tilt_by_m_payload * forward_tilt_by_theta_pan_factor
         + forward_tilt_by_J_pan * inertia_pan_by_m_payload
         + forward_tilt_by_J_x_tilt * inertia_pan_sin_sq_tilt_by_m_payload
-        + forward_tilt_by_m_payload_term * forward_tilt_by_theta_pan_term_2
-        + forward_tilt_by_m_payload_term_2 * forward_tilt_by_theta_pan_term_2
-        + forward_tilt_by_m_payload_term_3 * forward_tilt_by_theta_pan_term_2
-        + forward_tilt_by_theta_pan_term_2 * gravity_sin_tilt_by_m_payload_sin_tilt)
+        + forward_tilt_by_m_payload_factor * forward_tilt_by_theta_pan_factor
+        + forward_tilt_by_m_payload_factor_2 * forward_tilt_by_theta_pan_factor
+        + forward_tilt_by_m_payload_factor_3 * forward_tilt_by_theta_pan_factor
+        + forward_tilt_by_theta_pan_factor * gravity_sin_tilt_by_m_payload_sin_tilt)
     # backward_tilt_by_m_payload
     gp[5, 4] = (backward_tilt_by_J_pan * inertia_pan_by_m_payload
         + backward_tilt_by_J_x_tilt * inertia_pan_sin_sq_tilt_by_m_payload
-        + backward_tilt_by_theta_pan_term * cos_tilt_gravity_cos_tilt_by_m_payload
-        + backward_tilt_by_theta_pan_term * forward_tilt_by_m_payload_term
-        + backward_tilt_by_theta_pan_term * forward_tilt_by_m_payload_term_2
-        + backward_tilt_by_theta_pan_term * forward_tilt_by_m_payload_term_3
-        + backward_tilt_by_theta_pan_term * gravity_sin_tilt_by_m_payload_sin_tilt)
+        + backward_tilt_by_theta_pan_factor * cos_tilt_gravity_cos_tilt_by_m_payload
+        + backward_tilt_by_theta_pan_factor * forward_tilt_by_m_payload_factor
+        + backward_tilt_by_theta_pan_factor * forward_tilt_by_m_payload_factor_2
+        + backward_tilt_by_theta_pan_factor * forward_tilt_by_m_payload_factor_3
+        + backward_tilt_by_theta_pan_factor * gravity_sin_tilt_by_m_payload_sin_tilt)
     gp[3, 5] = holding_tilt_by_J_x_tilt  # holding_tilt_by_J_x_payload
     gp[4, 5] = forward_tilt_by_J_x_tilt  # forward_tilt_by_J_x_payload
     gp[5, 5] = backward_tilt_by_J_x_tilt  # backward_tilt_by_J_x_payload
@@ -1646,66 +1644,66 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + cos_tilt * gravity_cos_tilt_by_c_x_payload
         - inertia_pan_by_c_x_payload * load_torque_tilt_by_inertia_pan_sin_sq_tilt_term)
     cos_tilt_gravity_cos_tilt_by_c_x_payload = cos_tilt * gravity_cos_tilt_by_c_x_payload
-    forward_tilt_by_c_x_payload_term = (coupling_sin_tilt_by_c_x_payload
+    forward_tilt_by_c_x_payload_factor = (coupling_sin_tilt_by_c_x_payload
         * load_torque_tilt_by_coupling_sin_tilt)
-    forward_tilt_by_c_x_payload_term_2 = (inertia_tilt_by_c_z_payload
+    forward_tilt_by_c_x_payload_factor_2 = (inertia_tilt_by_c_z_payload
         * load_torque_tilt_by_inertia_pan_sin_cos_tilt)
     # forward_tilt_by_c_x_payload
-    gp[4, 8] = (cos_tilt_gravity_cos_tilt_by_c_x_payload * forward_tilt_by_theta_pan_term_2
+    gp[4, 8] = (cos_tilt_gravity_cos_tilt_by_c_x_payload * forward_tilt_by_theta_pan_factor
         + forward_tilt_by_J_pan * inertia_pan_by_c_x_payload
         - forward_tilt_by_J_x_tilt * inertia_pan_by_c_x_payload
-        + forward_tilt_by_c_x_payload_term * forward_tilt_by_theta_pan_term_2
-        + forward_tilt_by_c_x_payload_term_2 * forward_tilt_by_theta_pan_term_2)
+        + forward_tilt_by_c_x_payload_factor * forward_tilt_by_theta_pan_factor
+        + forward_tilt_by_c_x_payload_factor_2 * forward_tilt_by_theta_pan_factor)
     # backward_tilt_by_c_x_payload
     gp[5, 8] = (backward_tilt_by_J_pan * inertia_pan_by_c_x_payload
         - backward_tilt_by_J_x_tilt * inertia_pan_by_c_x_payload
-        + backward_tilt_by_theta_pan_term * cos_tilt_gravity_cos_tilt_by_c_x_payload
-        + backward_tilt_by_theta_pan_term * forward_tilt_by_c_x_payload_term
-        + backward_tilt_by_theta_pan_term * forward_tilt_by_c_x_payload_term_2)
+        + backward_tilt_by_theta_pan_factor * cos_tilt_gravity_cos_tilt_by_c_x_payload
+        + backward_tilt_by_theta_pan_factor * forward_tilt_by_c_x_payload_factor
+        + backward_tilt_by_theta_pan_factor * forward_tilt_by_c_x_payload_factor_2)
     # holding_tilt_by_c_y_payload
     gp[3, 9] = (-accel_pan * (-cos_tilt * gravity_sin_tilt_by_gravity
         + gravity_cos_tilt_by_gravity * sin_tilt) - accel_pan_by_c_y_payload * mass_pan_tilt)
-    forward_tilt_by_c_y_payload_term = (gravity_cos_tilt_by_gravity
+    forward_tilt_by_c_y_payload_factor = (gravity_cos_tilt_by_gravity
         * load_torque_tilt_by_coupling_sin_tilt)
-    forward_tilt_by_c_y_payload_term_2 = (gravity_sin_tilt_by_gravity
+    forward_tilt_by_c_y_payload_factor_2 = (gravity_sin_tilt_by_gravity
         * load_torque_tilt_by_coupling_cos_tilt)
     # forward_tilt_by_c_y_payload
     gp[4, 9] = (forward_tilt_by_J_pan * inertia_pan_by_c_y_payload
-        + forward_tilt_by_c_y_payload_term * forward_tilt_by_theta_pan_term_2
-        + forward_tilt_by_c_y_payload_term_2 * forward_tilt_by_theta_pan_term_2)
+        + forward_tilt_by_c_y_payload_factor * forward_tilt_by_theta_pan_factor
+        + forward_tilt_by_c_y_payload_factor_2 * forward_tilt_by_theta_pan_factor)
     # backward_tilt_by_c_y_payload
     gp[5, 9] = (backward_tilt_by_J_pan * inertia_pan_by_c_y_payload
-        + backward_tilt_by_theta_pan_term * forward_tilt_by_c_y_payload_term
-        + backward_tilt_by_theta_pan_term * forward_tilt_by_c_y_payload_term_2)
+        + backward_tilt_by_theta_pan_factor * forward_tilt_by_c_y_payload_factor
+        + backward_tilt_by_theta_pan_factor * forward_tilt_by_c_y_payload_factor_2)
     # holding_tilt_by_c_z_payload
     gp[3, 10] = (-accel_pan_by_c_z_payload * mass_pan_tilt
         + accel_pan_cos_tilt * coupling_sin_tilt_by_c_x_payload
         + gravity_cos_tilt_by_c_x_payload * sin_tilt
         + inertia_pan_by_c_x_payload * load_torque_tilt_by_inertia_pan_sin_cos_tilt_term
         + inertia_tilt_by_c_z_payload * load_torque_tilt_by_inertia_pan_sin_sq_tilt_term)
-    forward_tilt_by_c_z_payload_term = (coupling_sin_tilt_by_c_x_payload
+    forward_tilt_by_c_z_payload_factor = (coupling_sin_tilt_by_c_x_payload
         * load_torque_tilt_by_coupling_cos_tilt)
     gravity_cos_tilt_by_c_x_payload_sin_tilt = gravity_cos_tilt_by_c_x_payload * sin_tilt
-    forward_tilt_by_c_z_payload_term_2 = (inertia_pan_by_c_x_payload
+    forward_tilt_by_c_z_payload_factor_2 = (inertia_pan_by_c_x_payload
         * load_torque_tilt_by_inertia_pan_sin_cos_tilt)
     # forward_tilt_by_c_z_payload
     gp[4, 10] = (forward_tilt_by_J_x_tilt * inertia_tilt_by_c_z_payload
-        + forward_tilt_by_c_z_payload_term * forward_tilt_by_theta_pan_term_2
-        + forward_tilt_by_c_z_payload_term_2 * forward_tilt_by_theta_pan_term_2
-        + forward_tilt_by_theta_pan_term_2 * gravity_cos_tilt_by_c_x_payload_sin_tilt)
+        + forward_tilt_by_c_z_payload_factor * forward_tilt_by_theta_pan_factor
+        + forward_tilt_by_c_z_payload_factor_2 * forward_tilt_by_theta_pan_factor
+        + forward_tilt_by_theta_pan_factor * gravity_cos_tilt_by_c_x_payload_sin_tilt)
     # backward_tilt_by_c_z_payload
     gp[5, 10] = (backward_tilt_by_J_x_tilt * inertia_tilt_by_c_z_payload
-        + backward_tilt_by_theta_pan_term * forward_tilt_by_c_z_payload_term
-        + backward_tilt_by_theta_pan_term * forward_tilt_by_c_z_payload_term_2
-        + backward_tilt_by_theta_pan_term * gravity_cos_tilt_by_c_x_payload_sin_tilt)
+        + backward_tilt_by_theta_pan_factor * forward_tilt_by_c_z_payload_factor
+        + backward_tilt_by_theta_pan_factor * forward_tilt_by_c_z_payload_factor_2
+        + backward_tilt_by_theta_pan_factor * gravity_cos_tilt_by_c_x_payload_sin_tilt)
     gp[3, 11] = -accel_pan_by_b_pan * mass_pan_tilt  # holding_tilt_by_b_pan
     # forward_tilt_by_b_pan
-    gp[4, 11] = forward_tilt_by_theta_pan_term_2 * load_torque_tilt_by_b_pan
+    gp[4, 11] = forward_tilt_by_theta_pan_factor * load_torque_tilt_by_b_pan
     # backward_tilt_by_b_pan
-    gp[5, 11] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_b_pan
+    gp[5, 11] = backward_tilt_by_theta_pan_factor * load_torque_tilt_by_b_pan
     gp[3, 12] = -accel_pan_by_b_tilt * mass_pan_tilt - omega_tilt  # holding_tilt_by_b_tilt
-    gp[4, 12] = -forward_tilt_by_theta_pan_term_2 * omega_tilt  # forward_tilt_by_b_tilt
-    gp[5, 12] = -backward_tilt_by_theta_pan_term * omega_tilt  # backward_tilt_by_b_tilt
+    gp[4, 12] = -forward_tilt_by_theta_pan_factor * omega_tilt  # forward_tilt_by_b_tilt
+    gp[5, 12] = -backward_tilt_by_theta_pan_factor * omega_tilt  # backward_tilt_by_b_tilt
     gp[1, 14] = a_F_s_pan + 1.0  # forward_pan_by_F_s_pan
     gp[2, 14] = 1.0 - a_F_s_pan  # backward_pan_by_F_s_pan
     gp[1, 18] = F_s_pan  # forward_pan_by_a_F_s_pan
@@ -1713,9 +1711,9 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     gp[0, 21] = balance_gear_pan_by_gap_pan  # holding_pan_by_gap_pan
     gp[3, 21] = -accel_pan_by_gap_pan * mass_pan_tilt  # holding_tilt_by_gap_pan
     # forward_tilt_by_gap_pan
-    gp[4, 21] = forward_tilt_by_theta_pan_term_2 * load_torque_tilt_by_gap_pan
+    gp[4, 21] = forward_tilt_by_theta_pan_factor * load_torque_tilt_by_gap_pan
     # backward_tilt_by_gap_pan
-    gp[5, 21] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_gap_pan
+    gp[5, 21] = backward_tilt_by_theta_pan_factor * load_torque_tilt_by_gap_pan
     gp[7, 21] = 0.5  # half_gap_pan_by_gap_pan
     lower_pan_by_gap_pan = 0.5 * k_shaft_pan
     gp[8, 21] = -lower_pan_by_gap_pan  # upper_pan_by_gap_pan
@@ -1723,17 +1721,17 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     gp[0, 22] = balance_gear_pan_by_k_shaft_pan  # holding_pan_by_k_shaft_pan
     gp[3, 22] = -accel_pan_by_k_shaft_pan * mass_pan_tilt  # holding_tilt_by_k_shaft_pan
     # forward_tilt_by_k_shaft_pan
-    gp[4, 22] = forward_tilt_by_theta_pan_term_2 * load_torque_tilt_by_k_shaft_pan
+    gp[4, 22] = forward_tilt_by_theta_pan_factor * load_torque_tilt_by_k_shaft_pan
     # backward_tilt_by_k_shaft_pan
-    gp[5, 22] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_k_shaft_pan
+    gp[5, 22] = backward_tilt_by_theta_pan_factor * load_torque_tilt_by_k_shaft_pan
     gp[8, 22] = -half_gap_pan - theta_pan_minus_theta_gear_pan  # upper_pan_by_k_shaft_pan
     gp[9, 22] = half_gap_pan + theta_gear_pan - theta_pan  # lower_pan_by_k_shaft_pan
     gp[0, 23] = balance_gear_pan_by_d_shaft_pan  # holding_pan_by_d_shaft_pan
     gp[3, 23] = -accel_pan_by_d_shaft_pan * mass_pan_tilt  # holding_tilt_by_d_shaft_pan
     # forward_tilt_by_d_shaft_pan
-    gp[4, 23] = forward_tilt_by_theta_pan_term_2 * load_torque_tilt_by_d_shaft_pan
+    gp[4, 23] = forward_tilt_by_theta_pan_factor * load_torque_tilt_by_d_shaft_pan
     # backward_tilt_by_d_shaft_pan
-    gp[5, 23] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_d_shaft_pan
+    gp[5, 23] = backward_tilt_by_theta_pan_factor * load_torque_tilt_by_d_shaft_pan
     gp[8, 23] = upper_pan_by_d_shaft_pan
     gp[9, 23] = upper_pan_by_d_shaft_pan  # lower_pan_by_d_shaft_pan
     gp[0, 26] = balance_gear_pan_by_K_t_pan  # holding_pan_by_K_t_pan
@@ -1741,7 +1739,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     # holding_tilt_by_K_t_tilt
     gp[3, 31] = -accel_pan_by_K_t_tilt * mass_pan_tilt + i_tilt * ratio_tilt
     # holding_tilt_by_J_motor_tilt
-    gp[3, 32] = -accel_pan_by_J_motor_tilt * mass_pan_tilt - driving_torque_tilt_term
+    gp[3, 32] = -accel_pan_by_J_motor_tilt * mass_pan_tilt - driving_torque_tilt_factor
     # holding_tilt_by_b_motor_tilt
     gp[3, 33] = -accel_pan_by_b_motor_tilt * mass_pan_tilt - omega_tilt_ratio_tilt_sq
     # holding_tilt_by_N_tilt
@@ -1752,27 +1750,28 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + force_tilt_by_ratio_tilt * ratio_tilt_by_lead_tilt)  # holding_tilt_by_lead_tilt
     half_load_torque_tilt = 0.5 * load_torque_tilt
     half_abs_load_torque_tilt = 0.5 * abs(load_torque_tilt)
-    forward_tilt_by_lead_tilt_term = -half_abs_load_torque_tilt - half_load_torque_tilt
-    forward_tilt_by_lead_tilt_term_2 = half_abs_load_torque_tilt - half_load_torque_tilt
-    gp[4, 35] = (forward_tilt_by_lead_tilt_term * lowered_tilt_by_lead_tilt
-        + forward_tilt_by_lead_tilt_term_2 * raised_tilt_by_lead_tilt)  # forward_tilt_by_lead_tilt
+    forward_tilt_by_lead_tilt_factor = -half_abs_load_torque_tilt - half_load_torque_tilt
+    forward_tilt_by_lead_tilt_factor_2 = half_abs_load_torque_tilt - half_load_torque_tilt
+    # forward_tilt_by_lead_tilt
+    gp[4, 35] = (forward_tilt_by_lead_tilt_factor * lowered_tilt_by_lead_tilt
+        + forward_tilt_by_lead_tilt_factor_2 * raised_tilt_by_lead_tilt)
     # backward_tilt_by_lead_tilt
-    gp[5, 35] = (-forward_tilt_by_lead_tilt_term * raised_tilt_by_lead_tilt
-        - forward_tilt_by_lead_tilt_term_2 * lowered_tilt_by_lead_tilt)
+    gp[5, 35] = (-forward_tilt_by_lead_tilt_factor * raised_tilt_by_lead_tilt
+        - forward_tilt_by_lead_tilt_factor_2 * lowered_tilt_by_lead_tilt)
     gp[3, 36] = -accel_pan_by_d_screw_tilt * mass_pan_tilt  # holding_tilt_by_d_screw_tilt
     # forward_tilt_by_d_screw_tilt
-    gp[4, 36] = (forward_tilt_by_lead_tilt_term * lowered_tilt_by_d_screw_tilt
-        + forward_tilt_by_lead_tilt_term_2 * raised_tilt_by_d_screw_tilt)
+    gp[4, 36] = (forward_tilt_by_lead_tilt_factor * lowered_tilt_by_d_screw_tilt
+        + forward_tilt_by_lead_tilt_factor_2 * raised_tilt_by_d_screw_tilt)
     # backward_tilt_by_d_screw_tilt
-    gp[5, 36] = (-forward_tilt_by_lead_tilt_term * raised_tilt_by_d_screw_tilt
-        - forward_tilt_by_lead_tilt_term_2 * lowered_tilt_by_d_screw_tilt)
+    gp[5, 36] = (-forward_tilt_by_lead_tilt_factor * raised_tilt_by_d_screw_tilt
+        - forward_tilt_by_lead_tilt_factor_2 * lowered_tilt_by_d_screw_tilt)
     gp[3, 37] = -accel_pan_by_f_screw_tilt * mass_pan_tilt  # holding_tilt_by_f_screw_tilt
     # forward_tilt_by_f_screw_tilt
-    gp[4, 37] = (forward_tilt_by_lead_tilt_term * lowered_tilt_by_f_screw_tilt
-        + forward_tilt_by_lead_tilt_term_2 * raised_tilt_by_f_screw_tilt)
+    gp[4, 37] = (forward_tilt_by_lead_tilt_factor * lowered_tilt_by_f_screw_tilt
+        + forward_tilt_by_lead_tilt_factor_2 * raised_tilt_by_f_screw_tilt)
     # backward_tilt_by_f_screw_tilt
-    gp[5, 37] = (-forward_tilt_by_lead_tilt_term * raised_tilt_by_f_screw_tilt
-        - forward_tilt_by_lead_tilt_term_2 * lowered_tilt_by_f_screw_tilt)
+    gp[5, 37] = (-forward_tilt_by_lead_tilt_factor * raised_tilt_by_f_screw_tilt
+        - forward_tilt_by_lead_tilt_factor_2 * lowered_tilt_by_f_screw_tilt)
     gp[3, 38] = (-J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_l_ground_tilt
         - accel_pan_by_l_ground_tilt * mass_pan_tilt
         + driving_torque_tilt_by_linkage_cos_tilt * linkage_cos_tilt_by_l_ground_tilt
@@ -1793,20 +1792,18 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     cos_tilt_gravity_cos_tilt_by_gravity = cos_tilt * gravity_cos_tilt_by_gravity
     gravity_sin_tilt_by_gravity_sin_tilt = gravity_sin_tilt_by_gravity * sin_tilt
     # forward_tilt_by_gravity
-    gp[4, 43] = (cos_tilt_gravity_cos_tilt_by_gravity * forward_tilt_by_theta_pan_term_2
-        + forward_tilt_by_theta_pan_term_2 * gravity_sin_tilt_by_gravity_sin_tilt)
+    gp[4, 43] = (cos_tilt_gravity_cos_tilt_by_gravity * forward_tilt_by_theta_pan_factor
+        + forward_tilt_by_theta_pan_factor * gravity_sin_tilt_by_gravity_sin_tilt)
     # backward_tilt_by_gravity
-    gp[5, 43] = (backward_tilt_by_theta_pan_term * cos_tilt_gravity_cos_tilt_by_gravity
-        + backward_tilt_by_theta_pan_term * gravity_sin_tilt_by_gravity_sin_tilt)
+    gp[5, 43] = (backward_tilt_by_theta_pan_factor * cos_tilt_gravity_cos_tilt_by_gravity
+        + backward_tilt_by_theta_pan_factor * gravity_sin_tilt_by_gravity_sin_tilt)
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def outputs(t, x, u, p, y):
     """Write the measured signals into y.
 
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; y [4] in
-      OUTPUT_UNITS.
-    y: reading_theta_pan, reading_theta_tilt, reading_i_pan, reading_i_tilt.
+    t, x [8], u [2], p [44]; y [4] in OUTPUT_UNITS.
     """
     theta_pan, theta_tilt, i_pan, i_tilt = x[0], x[1], x[6], x[7]
     y[0] = theta_pan  # reading_theta_pan
@@ -1819,8 +1816,7 @@ def outputs(t, x, u, p, y):
 def output_jacobian(t, x, u, p, yx, yp):
     """Write the non-zero derivatives of outputs by state and parameter.
 
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; yx
-      [4, 8]; yp [4, 44].
+    t, x [8], u [2], p [44]; yx [4, 8]; yp [4, 44].
     """
     yx[0, 0] = 1.0  # reading_theta_pan_by_theta_pan
     yx[1, 1] = 1.0  # reading_theta_tilt_by_theta_tilt
@@ -1832,7 +1828,7 @@ def output_jacobian(t, x, u, p, yx, yp):
 def domain(p, bounds):
     """Write lower and upper bound of the state of every row of DOMAIN into bounds.
 
-    p [44] in the units of PARAMETERS; bounds [2, 2] in STATE_UNITS: lower, upper.
+    p [44]; bounds [2, 2] in STATE_UNITS: lower, upper.
     """
     l_ground_tilt, l_min_tilt, r_arm_tilt, s_start_tilt = p[38], p[39], p[40], p[41]
     s_max_tilt = p[42]
@@ -1858,8 +1854,7 @@ def domain(p, bounds):
 def margins(p, margin):
     """Write by how much the parameters meet every row of REQUIREMENTS into margin.
 
-    p [44] in the units of PARAMETERS; margin [4] in units of what is compared.
-    margin: requirement_0, requirement_1, requirement_2, requirement_3.
+    p [44]; margin [4] in units of what is compared.
     """
     F_c_pan, F_s_pan, lead_tilt, d_screw_tilt, f_screw_tilt = p[13], p[14], p[35], p[36], p[37]
     l_ground_tilt, l_min_tilt, r_arm_tilt, s_start_tilt = p[38], p[39], p[40], p[41]
@@ -1872,37 +1867,51 @@ def margins(p, margin):
     margin[3] = math.pi * d_screw_tilt - f_screw_tilt * lead_tilt  # requirement_3
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def touching(separation, half_gap, upper, lower):
+    """Return side and activity of a contact: the face beyond half the gap, active if it pushes."""
+    side = 1.0 if separation > 0.0 else -1.0
+    if side * separation > half_gap:
+        torque = upper if side > 0.0 else lower
+        return side, (1.0 if side * torque > 0.0 else 0.0)
+    return 0.0, 0.0
+
+
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def breaking_away(slide, holding, forward, backward):
+    """Return the direction of a friction: if it sticks, that of a torque beyond breakaway."""
+    if slide == 0.0 and holding > forward:
+        return 1.0
+    if slide == 0.0 and -holding > backward:
+        return -1.0
+    return slide
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def implied_modes(t, x, u, p):
+    """Return the modes that a state implies, in the order of MODE_NAMES: contact from the
+    separation, sticking from the holding torque.
+    """
+    omega_tilt, omega_gear_pan = x[3], x[5]
+    g = guard_values(t, x, u, p, 0.0, 0.0, 0.0, 0.0)
+    side_pan, active_pan = touching(g[6], g[7], g[8], g[9])
+    slide_pan, slide_tilt = np.sign(omega_gear_pan), np.sign(omega_tilt)
+    g = guard_values(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan)
+    slide_pan = breaking_away(slide_pan, g[0], g[1], g[2])
+    slide_tilt = breaking_away(slide_tilt, g[3], g[4], g[5])
+    return slide_pan, slide_tilt, side_pan, active_pan
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def initial_modes(t, x, u, p, m):
-    """Find the modes of a state: contact from the separation, sticking from the holding torque."""
-    frictions = len(FRICTION_RATES)
-    contacts = (len(m) - frictions) // 2
-    g = np.empty(3 * frictions + 4 * contacts)
-    m[:] = 0.0
-    guards(t, x, u, p, m, g)
-    for k in range(contacts):
-        at = 3 * frictions + 4 * k
-        side = 1.0 if g[at] > 0.0 else -1.0
-        if side * g[at] > g[at + 1]:
-            torque = g[at + 2] if side > 0.0 else g[at + 3]
-            m[frictions + 2 * k] = side
-            m[frictions + 2 * k + 1] = 1.0 if side * torque > 0.0 else 0.0
-    for k in range(frictions):
-        m[k] = np.sign(x[FRICTION_RATES[k]])
-    guards(t, x, u, p, m, g)
-    for k in range(frictions):
-        if m[k] == 0.0 and g[3 * k] > g[3 * k + 1]:
-            m[k] = 1.0
-        elif m[k] == 0.0 and -g[3 * k] > g[3 * k + 2]:
-            m[k] = -1.0
+    """Write the modes that a state implies into m; see MODE_NAMES."""
+    m[0], m[1], m[2], m[3] = implied_modes(t, x, u, p)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def state_derivative(t, x, u, p, dx):
     """Write the time derivative of the state into dx, in the modes that the state implies."""
-    m = np.empty(len(MODE_NAMES))
-    initial_modes(t, x, u, p, m)
-    mode_derivative(t, x, u, p, m, dx)
+    mode_derivative(t, x, u, p, implied_modes(t, x, u, p), dx)
 
 
 # What the field calls some of these functions.
@@ -1986,4 +1995,4 @@ EFFECTS = (
      "linear actuator with lead screw and linkage",
      "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6", "", False),
 )
-# END sha256 1b26dd8b272f8b8a96d1d6648500e1cbc7f273bbd89e385a80a56c0bdbc4c1c1
+# END sha256 e2576e5d223d32c37986fc97781de60f7c2cca412775473c4dda6fa74c930aaf

@@ -28,7 +28,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "01e0ea5b0bb9b398"
+MODEL_HASH = "ed093a152caf5434"
 NAME = "ideal"
 TITLE = "Balanced pan-tilt platform of the thesis"
 # How many numbers `prepare` writes.
@@ -67,6 +67,8 @@ PARAMETERS = (
 )
 
 
+# Arguments, in SI: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS;
+# modes m as MODE_NAMES; c as `prepare` writes it. Lengths and shapes are in brackets.
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def constants(p):
     """Return what depends on the parameters alone."""
@@ -74,11 +76,11 @@ def constants(p):
     inertia_pan_sin_sq_tilt = J_x_tilt - J_z_tilt
     inertia_pan = J_pan + J_z_tilt
     inverse_mass_tilt = 1.0 / J_y_tilt
-    return (inertia_pan_sin_sq_tilt, inertia_pan, inverse_mass_tilt)
+    return inertia_pan_sin_sq_tilt, inertia_pan, inverse_mass_tilt
 
 
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
-def mass_and_forces(t, x, u, p, m, c):
+def mass_and_forces(t, x, u, p, c):
     """Return mass matrix, forces and what else the functions below have in common."""
     theta_tilt, omega_pan, omega_tilt = x[1], x[2], x[3]
     tau_pan, tau_tilt = u[0], u[1]
@@ -91,15 +93,15 @@ def mass_and_forces(t, x, u, p, m, c):
     force_pan = -b_pan * omega_pan - 2.0 * coriolis * omega_tilt + tau_pan
     mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
     force_tilt = -b_tilt * omega_tilt + coriolis * omega_pan + tau_tilt
-    return (force_pan, mass_pan, force_tilt)
+    return force_pan, mass_pan, force_tilt
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def prepare(p, c):
     """Write into c what prepared_derivative takes from the parameters alone.
 
-    p [6] in the units of PARAMETERS; c [3] of prepare.
-    c: inertia_pan_sin_sq_tilt, inertia_pan, inverse_mass_tilt.
+    p [6]; c [3].
+    c: what `constants` returns, in its order.
     """
     values = constants(p)
     for k in range(PREPARED):
@@ -110,11 +112,9 @@ def prepare(p, c):
 def prepared_derivative(t, x, u, p, m, c, dx):
     """Write the time derivative of the state into dx in the modes m, c being prepared.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-      MODE_NAMES; c [3] of prepare; dx [4] in STATE_UNITS per s.
-    dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt.
+    t, x [4], u [2], p [6], m [0], c [3]; dx [4] in STATE_UNITS per s.
     """
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, c)
     force_pan, mass_pan, force_tilt = forces[0], forces[1], forces[2]
     omega_pan, omega_tilt = x[2], x[3]
     inverse_mass_tilt = c[2]
@@ -129,9 +129,7 @@ def prepared_derivative(t, x, u, p, m, c, dx):
 def mode_derivative(t, x, u, p, m, dx):
     """Write the time derivative of the state into dx in the modes m.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-      MODE_NAMES; dx [4] in STATE_UNITS per s.
-    dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt.
+    t, x [4], u [2], p [6], m [0]; dx [4] in STATE_UNITS per s.
     """
     prepared_derivative(t, x, u, p, m, constants(p), dx)
 
@@ -140,8 +138,7 @@ def mode_derivative(t, x, u, p, m, dx):
 def guards(t, x, u, p, m, g):
     """Write holding and breakaway torques, gap separations and contact torques into g.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-      MODE_NAMES; g [0] in N m and rad.
+    t, x [4], u [2], p [6], m [0]; g [0] in N m and rad.
     """
     return
 
@@ -150,12 +147,11 @@ def guards(t, x, u, p, m, g):
 def energy(t, x, u, p, m, e):
     """Write stored energy in J, power in and dissipated power in W into e.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-      MODE_NAMES; e [3] in J, W and W.
+    t, x [4], u [2], p [6], m [0]; e [3] in J, W and W.
     e: stored, power_in, dissipated.
     """
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, c)
     mass_pan = forces[1]
     omega_pan, omega_tilt = x[2], x[3]
     tau_pan, tau_tilt = u[0], u[1]
@@ -171,13 +167,12 @@ def energy(t, x, u, p, m, e):
 def equation_error(t, x, u, p, m, r):
     """Write torques that rows lack, then other states' rates, into r; x ends in accelerations.
 
-    t in s; x [6] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-      MODE_NAMES; r [2] in N m, then STATE_UNITS per s.
+    t, x [6], u [2], p [6], m [0]; r [2] in N m, then STATE_UNITS per s.
     x: STATE_NAMES, then given_accel_pan, given_accel_tilt.
     r: torque_pan, torque_tilt.
     """
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, c)
     force_pan, mass_pan, force_tilt = forces[0], forces[1], forces[2]
     given_accel_pan, given_accel_tilt = x[4], x[5]
     J_y_tilt = p[2]
@@ -189,11 +184,10 @@ def equation_error(t, x, u, p, m, r):
 def mass_matrix(t, x, u, p, m, M):
     """Write the mass matrix of the joints, then of gear outputs, into M.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-      MODE_NAMES; M [2, 2] in kg m^2.
+    t, x [4], u [2], p [6], m [0]; M [2, 2] in kg m^2.
     """
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, c)
     mass_pan = forces[1]
     J_y_tilt = p[2]
     M[0, 0] = mass_pan
@@ -206,8 +200,7 @@ def mass_matrix(t, x, u, p, m, M):
 def gravity_torque(t, x, u, p, m, G):
     """Write the torques that hold the machine against its weight into G.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-      MODE_NAMES; G [2] in N m.
+    t, x [4], u [2], p [6], m [0]; G [2] in N m.
     G: gravity_torque_pan, gravity_torque_tilt.
     """
     G[0] = 0.0  # gravity_torque_pan
@@ -218,13 +211,10 @@ def gravity_torque(t, x, u, p, m, G):
 def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     """Write the non-zero derivatives of dx into fx, fu, fp and those of guards into gx, gp.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-      MODE_NAMES; fx [4, 4]; fu [4, 2]; fp [4, 6]; gx [0, 4]; gp [0, 6].
-    fx: rows and columns as STATE_NAMES.
-    fu: rows as STATE_NAMES, columns as INPUT_NAMES.
-    fp: rows as STATE_NAMES, columns as PARAMETERS.
-    gx: rows as g of guards, columns as STATE_NAMES.
-    gp: rows as g of guards, columns as PARAMETERS.
+    t, x [4], u [2], p [6], m [0]; fx [4, 4]; fu [4, 2]; fp [4, 6]; gx [0, 4]; gp [0, 6].
+    fx: rows and columns as STATE_NAMES; fu: rows as STATE_NAMES, columns as INPUT_NAMES; fp: rows
+      as STATE_NAMES, columns as PARAMETERS; gx: rows as g of guards, columns as STATE_NAMES; gp:
+      rows as g of guards, columns as PARAMETERS.
     Where fp or gx is empty, it and what follows it is not computed.
     """
     theta_tilt, omega_pan, omega_tilt = x[1], x[2], x[3]
@@ -287,9 +277,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
 def outputs(t, x, u, p, y):
     """Write the measured signals into y.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; y [2] in
-      OUTPUT_UNITS.
-    y: reading_theta_pan, reading_theta_tilt.
+    t, x [4], u [2], p [6]; y [2] in OUTPUT_UNITS.
     """
     theta_pan, theta_tilt = x[0], x[1]
     y[0] = theta_pan  # reading_theta_pan
@@ -300,8 +288,7 @@ def outputs(t, x, u, p, y):
 def output_jacobian(t, x, u, p, yx, yp):
     """Write the non-zero derivatives of outputs by state and parameter.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; yx [2, 4];
-      yp [2, 6].
+    t, x [4], u [2], p [6]; yx [2, 4]; yp [2, 6].
     """
     yx[0, 0] = 1.0  # reading_theta_pan_by_theta_pan
     yx[1, 1] = 1.0  # reading_theta_tilt_by_theta_tilt
@@ -311,7 +298,7 @@ def output_jacobian(t, x, u, p, yx, yp):
 def domain(p, bounds):
     """Write lower and upper bound of the state of every row of DOMAIN into bounds.
 
-    p [6] in the units of PARAMETERS; bounds [0, 2] in STATE_UNITS: lower, upper.
+    p [6]; bounds [0, 2] in STATE_UNITS: lower, upper.
     """
     return
 
@@ -320,7 +307,7 @@ def domain(p, bounds):
 def margins(p, margin):
     """Write by how much the parameters meet every row of REQUIREMENTS into margin.
 
-    p [6] in the units of PARAMETERS; margin [0] in units of what is compared.
+    p [6]; margin [0] in units of what is compared.
     """
     return
 
@@ -445,4 +432,4 @@ EFFECTS = (
      "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
      "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
 )
-# END sha256 7560a36feb3f68f962016263db8d64da08a7b0a0aa71b7e286f6bbb60148ba2c
+# END sha256 b15c21a2b090cdb17ce95af1ccebecf32fd23f64f92f264174c1d61ec02a1a28

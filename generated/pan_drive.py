@@ -32,7 +32,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "847975f86cd5685a"
+MODEL_HASH = "2708a5dc58b9ea67"
 NAME = "pan_drive"
 TITLE = "Pan drive of the thesis"
 # How many numbers `prepare` writes.
@@ -87,6 +87,8 @@ PARAMETERS = (
 )
 
 
+# Arguments, in SI: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS;
+# modes m as MODE_NAMES; c as `prepare` writes it. Lengths and shapes are in brackets.
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def constants(p):
     """Return what depends on the parameters alone."""
@@ -96,49 +98,48 @@ def constants(p):
     mass_gear_pan = J_motor_pan * (N_pan * N_pan)
     inverse_mass_gear_pan = 1.0 / mass_gear_pan
     K_t_pan_N_pan = K_t_pan * N_pan
-    return (half_gap_pan, inverse_mass_pan, mass_gear_pan, inverse_mass_gear_pan, K_t_pan_N_pan)
+    return half_gap_pan, inverse_mass_pan, mass_gear_pan, inverse_mass_gear_pan, K_t_pan_N_pan
 
 
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
-def mass_and_forces(t, x, u, p, m, c):
+def mass_and_forces(t, x, u, p, slide_pan, side_pan, active_pan, c):
     """Return mass matrix, forces and what else the functions below have in common."""
     theta_pan, omega_pan, theta_gear_pan, omega_gear_pan, i_pan = x[0], x[1], x[2], x[3], x[4]
     u_pan = u[0]
     b_pan, F_c_pan, F_s_pan, v_s_pan, F_v_pan, a_F_c_pan = p[1], p[2], p[3], p[4], p[5], p[6]
     a_F_s_pan, a_v_s_pan, a_F_v_pan, k_shaft_pan, d_shaft_pan = p[7], p[8], p[9], p[11], p[12]
     L_pan, R_pan, K_t_pan, N_pan = p[13], p[14], p[15], p[17]
-    slide_pan, side_pan, active_pan = m[0], m[1], m[2]
     half_gap_pan, K_t_pan_N_pan = c[0], c[4]
     omega_gear_pan_minus_omega_pan = omega_gear_pan - omega_pan
     d_shaft_pan_omega_gear_pan_minus_omega_pan = d_shaft_pan * omega_gear_pan_minus_omega_pan
     theta_pan_minus_theta_gear_pan = -theta_gear_pan + theta_pan
-    shaft_torque_pan_term = -half_gap_pan * side_pan - theta_pan_minus_theta_gear_pan
-    k_shaft_pan_shaft_torque_pan_term = k_shaft_pan * shaft_torque_pan_term
+    shaft_torque_pan_factor = -half_gap_pan * side_pan - theta_pan_minus_theta_gear_pan
+    k_shaft_pan_shaft_torque_pan_factor = k_shaft_pan * shaft_torque_pan_factor
     shaft_torque_pan = (active_pan * (d_shaft_pan_omega_gear_pan_minus_omega_pan
-        + k_shaft_pan_shaft_torque_pan_term))
+        + k_shaft_pan_shaft_torque_pan_factor))
     force_pan = -b_pan * omega_pan + shaft_torque_pan
     coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
     omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
     stribeck_square_pan = (omega_gear_pan_sq / ((v_s_pan * v_s_pan) * ((a_v_s_pan * slide_pan
         + 1.0) * (a_v_s_pan * slide_pan + 1.0))))
     viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
-    force_gear_pan_term = (slide_pan * (coulomb_torque_pan
+    friction_torque_gear_pan = (slide_pan * (coulomb_torque_pan
         + omega_gear_pan * slide_pan * viscous_coefficient_pan + (F_s_pan * (a_F_s_pan * slide_pan
         + 1.0) - coulomb_torque_pan) * math.exp(-stribeck_square_pan)))
-    force_gear_pan = K_t_pan * N_pan * i_pan - force_gear_pan_term - shaft_torque_pan
+    force_gear_pan = K_t_pan * N_pan * i_pan - friction_torque_gear_pan - shaft_torque_pan
     rate_of_i_pan = (-K_t_pan_N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
     return (omega_gear_pan_minus_omega_pan, d_shaft_pan_omega_gear_pan_minus_omega_pan,
-        theta_pan_minus_theta_gear_pan, shaft_torque_pan_term, k_shaft_pan_shaft_torque_pan_term,
-        shaft_torque_pan, force_pan, omega_gear_pan_sq, force_gear_pan_term, force_gear_pan,
-        rate_of_i_pan)
+        theta_pan_minus_theta_gear_pan, shaft_torque_pan_factor,
+        k_shaft_pan_shaft_torque_pan_factor, shaft_torque_pan, force_pan, omega_gear_pan_sq,
+        friction_torque_gear_pan, force_gear_pan, rate_of_i_pan)
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def prepare(p, c):
     """Write into c what prepared_derivative takes from the parameters alone.
 
-    p [18] in the units of PARAMETERS; c [5] of prepare.
-    c: half_gap_pan, inverse_mass_pan, mass_gear_pan, inverse_mass_gear_pan, K_t_pan_N_pan.
+    p [18]; c [5].
+    c: what `constants` returns, in its order.
     """
     values = constants(p)
     for k in range(PREPARED):
@@ -149,14 +150,12 @@ def prepare(p, c):
 def prepared_derivative(t, x, u, p, m, c, dx):
     """Write the time derivative of the state into dx in the modes m, c being prepared.
 
-    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
-      see MODE_NAMES; c [5] of prepare; dx [5] in STATE_UNITS per s.
-    dx: rate_of_theta_pan, accel_pan, rate_of_theta_gear_pan, accel_gear_pan, rate_of_i_pan.
+    t, x [5], u [1], p [18], m [3], c [5]; dx [5] in STATE_UNITS per s.
     """
-    forces = mass_and_forces(t, x, u, p, m, c)
+    slide_pan, side_pan, active_pan = m[0], m[1], m[2]
+    forces = mass_and_forces(t, x, u, p, slide_pan, side_pan, active_pan, c)
     force_pan, force_gear_pan, rate_of_i_pan = forces[6], forces[9], forces[10]
     omega_pan, omega_gear_pan = x[1], x[3]
-    slide_pan = m[0]
     inverse_mass_pan, inverse_mass_gear_pan = c[1], c[3]
     dx[0] = omega_pan  # rate_of_theta_pan
     dx[1] = force_pan * inverse_mass_pan  # accel_pan
@@ -169,83 +168,89 @@ def prepared_derivative(t, x, u, p, m, c, dx):
 def mode_derivative(t, x, u, p, m, dx):
     """Write the time derivative of the state into dx in the modes m.
 
-    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
-      see MODE_NAMES; dx [5] in STATE_UNITS per s.
-    dx: rate_of_theta_pan, accel_pan, rate_of_theta_gear_pan, accel_gear_pan, rate_of_i_pan.
+    t, x [5], u [1], p [18], m [3]; dx [5] in STATE_UNITS per s.
     """
     prepared_derivative(t, x, u, p, m, constants(p), dx)
+
+
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def guard_values(t, x, u, p, slide_pan, side_pan, active_pan):
+    """Return what `guards` writes, in modes that are given one by one."""
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, slide_pan, side_pan, active_pan, c)
+    d_shaft_pan_omega_gear_pan_minus_omega_pan = forces[1]
+    theta_pan_minus_theta_gear_pan, shaft_torque_pan = forces[2], forces[5]
+    i_pan = x[4]
+    F_s_pan, a_F_s_pan, k_shaft_pan = p[3], p[7], p[11]
+    half_gap_pan, K_t_pan_N_pan = c[0], c[4]
+    holding_pan = K_t_pan_N_pan * i_pan - shaft_torque_pan
+    forward_pan = F_s_pan * (a_F_s_pan + 1.0)
+    backward_pan = F_s_pan * (1.0 - a_F_s_pan)
+    separation_pan = -theta_pan_minus_theta_gear_pan
+    upper_pan = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (-half_gap_pan
+        - theta_pan_minus_theta_gear_pan))
+    lower_pan = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (half_gap_pan
+        - theta_pan_minus_theta_gear_pan))
+    return (holding_pan, forward_pan, backward_pan, separation_pan, half_gap_pan, upper_pan,
+        lower_pan)
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def guards(t, x, u, p, m, g):
     """Write holding and breakaway torques, gap separations and contact torques into g.
 
-    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
-      see MODE_NAMES; g [7] in N m and rad.
+    t, x [5], u [1], p [18], m [3]; g [7] in N m and rad.
     g: holding_pan, forward_pan, backward_pan, separation_pan, half_gap_pan, upper_pan, lower_pan.
     """
-    c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
-    d_shaft_pan_omega_gear_pan_minus_omega_pan = forces[1]
-    theta_pan_minus_theta_gear_pan, shaft_torque_pan = forces[2], forces[5]
-    i_pan = x[4]
-    F_s_pan, a_F_s_pan, k_shaft_pan = p[3], p[7], p[11]
-    half_gap_pan, K_t_pan_N_pan = c[0], c[4]
-    g[0] = K_t_pan_N_pan * i_pan - shaft_torque_pan  # holding_pan
-    g[1] = F_s_pan * (a_F_s_pan + 1.0)  # forward_pan
-    g[2] = F_s_pan * (1.0 - a_F_s_pan)  # backward_pan
-    g[3] = -theta_pan_minus_theta_gear_pan  # separation_pan
-    g[4] = half_gap_pan
-    g[5] = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (-half_gap_pan
-        - theta_pan_minus_theta_gear_pan))  # upper_pan
-    g[6] = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (half_gap_pan
-        - theta_pan_minus_theta_gear_pan))  # lower_pan
+    slide_pan, side_pan, active_pan = m[0], m[1], m[2]
+    (g[0], g[1], g[2], g[3], g[4], g[5], g[6]) = guard_values(t, x, u, p, slide_pan, side_pan,
+        active_pan)
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def energy(t, x, u, p, m, e):
     """Write stored energy in J, power in and dissipated power in W into e.
 
-    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
-      see MODE_NAMES; e [3] in J, W and W.
+    t, x [5], u [1], p [18], m [3]; e [3] in J, W and W.
     e: stored, power_in, dissipated.
     """
+    slide_pan, side_pan, active_pan = m[0], m[1], m[2]
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, slide_pan, side_pan, active_pan, c)
     omega_gear_pan_minus_omega_pan = forces[0]
-    d_shaft_pan_omega_gear_pan_minus_omega_pan, shaft_torque_pan_term = forces[1], forces[3]
-    k_shaft_pan_shaft_torque_pan_term, omega_gear_pan_sq = forces[4], forces[7]
-    force_gear_pan_term = forces[8]
+    d_shaft_pan_omega_gear_pan_minus_omega_pan, shaft_torque_pan_factor = forces[1], forces[3]
+    k_shaft_pan_shaft_torque_pan_factor, omega_gear_pan_sq = forces[4], forces[7]
+    friction_torque_gear_pan = forces[8]
     omega_pan, omega_gear_pan, i_pan = x[1], x[3], x[4]
     u_pan = u[0]
     J_pan, b_pan, k_shaft_pan, L_pan, R_pan = p[0], p[1], p[11], p[13], p[14]
-    side_pan, active_pan = m[1], m[2]
     mass_gear_pan = c[2]
     side_pan_sq = side_pan * side_pan
     i_pan_sq = i_pan * i_pan
     omega_pan_sq = omega_pan * omega_pan
     e[0] = (0.5 * J_pan * omega_pan_sq + 0.5 * L_pan * i_pan_sq
-        + 0.5 * k_shaft_pan * (shaft_torque_pan_term * shaft_torque_pan_term) * side_pan_sq
+        + 0.5 * k_shaft_pan * (shaft_torque_pan_factor * shaft_torque_pan_factor) * side_pan_sq
         + 0.5 * mass_gear_pan * omega_gear_pan_sq)  # stored
     e[1] = i_pan * u_pan  # power_in
     twist_rate_pan = omega_gear_pan_minus_omega_pan * side_pan_sq
     winding_loss_pan = R_pan * i_pan_sq
-    e[2] = (b_pan * omega_pan_sq + force_gear_pan_term * omega_gear_pan
+    # dissipated
+    e[2] = (b_pan * omega_pan_sq + friction_torque_gear_pan * omega_gear_pan
         + twist_rate_pan * (active_pan * d_shaft_pan_omega_gear_pan_minus_omega_pan
-        - k_shaft_pan_shaft_torque_pan_term * (1.0 - active_pan)) + winding_loss_pan)  # dissipated
+        - k_shaft_pan_shaft_torque_pan_factor * (1.0 - active_pan)) + winding_loss_pan)
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def equation_error(t, x, u, p, m, r):
     """Write torques that rows lack, then other states' rates, into r; x ends in accelerations.
 
-    t in s; x [7] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
-      see MODE_NAMES; r [3] in N m, then STATE_UNITS per s.
+    t, x [7], u [1], p [18], m [3]; r [3] in N m, then STATE_UNITS per s.
     x: STATE_NAMES, then given_accel_pan, given_accel_gear_pan.
     r: torque_pan, torque_gear_pan, rate_of_i_pan.
     """
+    slide_pan, side_pan, active_pan = m[0], m[1], m[2]
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, slide_pan, side_pan, active_pan, c)
     force_pan, force_gear_pan, rate_of_i_pan = forces[6], forces[9], forces[10]
     given_accel_pan, given_accel_gear_pan = x[5], x[6]
     J_pan = p[0]
@@ -259,8 +264,7 @@ def equation_error(t, x, u, p, m, r):
 def mass_matrix(t, x, u, p, m, M):
     """Write the mass matrix of the joints, then of gear outputs, into M.
 
-    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
-      see MODE_NAMES; M [2, 2] in kg m^2.
+    t, x [5], u [1], p [18], m [3]; M [2, 2] in kg m^2.
     """
     c = constants(p)
     J_pan = p[0]
@@ -275,8 +279,7 @@ def mass_matrix(t, x, u, p, m, M):
 def gravity_torque(t, x, u, p, m, G):
     """Write the torques that hold the machine against its weight into G.
 
-    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
-      see MODE_NAMES; G [2] in N m.
+    t, x [5], u [1], p [18], m [3]; G [2] in N m.
     G: gravity_torque_pan, gravity_torque_gear_pan.
     """
     G[0] = 0.0  # gravity_torque_pan
@@ -287,13 +290,10 @@ def gravity_torque(t, x, u, p, m, G):
 def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     """Write the non-zero derivatives of dx into fx, fu, fp and those of guards into gx, gp.
 
-    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
-      see MODE_NAMES; fx [5, 5]; fu [5, 1]; fp [5, 18]; gx [7, 5]; gp [7, 18].
-    fx: rows and columns as STATE_NAMES.
-    fu: rows as STATE_NAMES, columns as INPUT_NAMES.
-    fp: rows as STATE_NAMES, columns as PARAMETERS.
-    gx: rows as g of guards, columns as STATE_NAMES.
-    gp: rows as g of guards, columns as PARAMETERS.
+    t, x [5], u [1], p [18], m [3]; fx [5, 5]; fu [5, 1]; fp [5, 18]; gx [7, 5]; gp [7, 18].
+    fx: rows and columns as STATE_NAMES; fu: rows as STATE_NAMES, columns as INPUT_NAMES; fp: rows
+      as STATE_NAMES, columns as PARAMETERS; gx: rows as g of guards, columns as STATE_NAMES; gp:
+      rows as g of guards, columns as PARAMETERS.
     Where fp or gx is empty, it and what follows it is not computed.
     """
     theta_pan, omega_pan, theta_gear_pan, omega_gear_pan, i_pan = x[0], x[1], x[2], x[3], x[4]
@@ -328,21 +328,22 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     one_plus_a_v_s_pan_slide_pan = a_v_s_pan * slide_pan + 1.0
     one_plus_a_v_s_pan_slide_pan_inverse_sq = (1.0 / (one_plus_a_v_s_pan_slide_pan
         * one_plus_a_v_s_pan_slide_pan))
-    stribeck_square_pan_term = one_plus_a_v_s_pan_slide_pan_inverse_sq * v_s_pan_inverse_sq
+    stribeck_square_pan_factor = one_plus_a_v_s_pan_slide_pan_inverse_sq * v_s_pan_inverse_sq
     one_plus_a_F_c_pan_slide_pan = a_F_c_pan * slide_pan + 1.0
     coulomb_torque_pan = F_c_pan * one_plus_a_F_c_pan_slide_pan
     one_plus_a_F_s_pan_slide_pan = a_F_s_pan * slide_pan + 1.0
     omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
-    stribeck_square_pan = omega_gear_pan_sq * stribeck_square_pan_term
+    stribeck_square_pan = omega_gear_pan_sq * stribeck_square_pan_factor
     exp_minus_stribeck_square_pan = math.exp(-stribeck_square_pan)
-    accel_gear_pan_by_omega_gear_pan_term = (exp_minus_stribeck_square_pan * (F_s_pan
+    accel_gear_pan_by_omega_gear_pan_factor = (exp_minus_stribeck_square_pan * (F_s_pan
         * one_plus_a_F_s_pan_slide_pan - coulomb_torque_pan))
-    twice_accel_gear_pan_by_omega_gear_pan_term = 2.0 * accel_gear_pan_by_omega_gear_pan_term
+    twice_accel_gear_pan_by_omega_gear_pan_factor = 2.0 * accel_gear_pan_by_omega_gear_pan_factor
     one_plus_a_F_v_pan_slide_pan = a_F_v_pan * slide_pan + 1.0
     viscous_coefficient_pan = F_v_pan * one_plus_a_F_v_pan_slide_pan
+    # accel_gear_pan_by_omega_gear_pan
     fx[3, 3] = (inverse_mass_gear_pan_slide_pan_sq * (-balance_gear_pan_by_omega_pan - slide_pan
-        * (-omega_gear_pan * stribeck_square_pan_term * twice_accel_gear_pan_by_omega_gear_pan_term
-        + slide_pan * viscous_coefficient_pan)))  # accel_gear_pan_by_omega_gear_pan
+        * (-omega_gear_pan * stribeck_square_pan_factor
+        * twice_accel_gear_pan_by_omega_gear_pan_factor + slide_pan * viscous_coefficient_pan)))
     rate_of_i_pan_by_u_pan = 1.0 / L_pan
     balance_gear_pan_by_i_pan = K_t_pan * N_pan
     # rate_of_i_pan_by_omega_gear_pan
@@ -356,9 +357,9 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     upper_pan_by_d_shaft_pan = omega_gear_pan - omega_pan
     half_gap_pan = 0.5 * gap_pan
     theta_pan_minus_theta_gear_pan = -theta_gear_pan + theta_pan
-    shaft_torque_pan_term = -half_gap_pan * side_pan - theta_pan_minus_theta_gear_pan
+    shaft_torque_pan_factor = -half_gap_pan * side_pan - theta_pan_minus_theta_gear_pan
     shaft_torque_pan = (active_pan * (d_shaft_pan * upper_pan_by_d_shaft_pan
-        + k_shaft_pan * shaft_torque_pan_term))
+        + k_shaft_pan * shaft_torque_pan_factor))
     force_pan = -b_pan * omega_pan + shaft_torque_pan
     accel_pan = force_pan * inverse_mass_pan
     fp[1, 0] = -accel_pan * inverse_mass_pan  # accel_pan_by_J_pan
@@ -367,9 +368,10 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * one_plus_a_F_c_pan_slide_pan + one_plus_a_F_c_pan_slide_pan))  # accel_gear_pan_by_F_c_pan
     fp[3, 3] = (-exp_minus_stribeck_square_pan * inverse_mass_gear_pan_slide_pan_sq
         * one_plus_a_F_s_pan_slide_pan * slide_pan)  # accel_gear_pan_by_F_s_pan
-    accel_gear_pan_by_v_s_pan_term = omega_gear_pan_sq * twice_accel_gear_pan_by_omega_gear_pan_term
+    accel_gear_pan_by_v_s_pan_factor = (omega_gear_pan_sq
+        * twice_accel_gear_pan_by_omega_gear_pan_factor)
     # accel_gear_pan_by_v_s_pan
-    fp[3, 4] = (-accel_gear_pan_by_v_s_pan_term * inverse_mass_gear_pan_slide_pan_sq
+    fp[3, 4] = (-accel_gear_pan_by_v_s_pan_factor * inverse_mass_gear_pan_slide_pan_sq
         * one_plus_a_v_s_pan_slide_pan_inverse_sq * slide_pan / (v_s_pan * v_s_pan * v_s_pan))
     fp[3, 5] = (-inverse_mass_gear_pan_slide_pan_sq * omega_gear_pan * one_plus_a_F_v_pan_slide_pan
         * slide_pan_sq)  # accel_gear_pan_by_F_v_pan
@@ -378,9 +380,10 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * exp_minus_stribeck_square_pan + F_c_pan_slide_pan))  # accel_gear_pan_by_a_F_c_pan
     fp[3, 7] = (-F_s_pan * exp_minus_stribeck_square_pan * inverse_mass_gear_pan_slide_pan_sq
         * slide_pan_sq)  # accel_gear_pan_by_a_F_s_pan
-    fp[3, 8] = (-accel_gear_pan_by_v_s_pan_term * inverse_mass_gear_pan_slide_pan_sq * slide_pan_sq
-        * v_s_pan_inverse_sq / (one_plus_a_v_s_pan_slide_pan * one_plus_a_v_s_pan_slide_pan
-        * one_plus_a_v_s_pan_slide_pan))  # accel_gear_pan_by_a_v_s_pan
+    # accel_gear_pan_by_a_v_s_pan
+    fp[3, 8] = (-accel_gear_pan_by_v_s_pan_factor * inverse_mass_gear_pan_slide_pan_sq
+        * slide_pan_sq * v_s_pan_inverse_sq / (one_plus_a_v_s_pan_slide_pan
+        * one_plus_a_v_s_pan_slide_pan * one_plus_a_v_s_pan_slide_pan))
     omega_gear_pan_slide_pan = omega_gear_pan * slide_pan
     # accel_gear_pan_by_a_F_v_pan
     fp[3, 9] = -F_v_pan * inverse_mass_gear_pan_slide_pan_sq * omega_gear_pan_slide_pan
@@ -388,7 +391,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     fp[1, 10] = -balance_gear_pan_by_gap_pan * inverse_mass_pan  # accel_pan_by_gap_pan
     # accel_gear_pan_by_gap_pan
     fp[3, 10] = balance_gear_pan_by_gap_pan * inverse_mass_gear_pan_slide_pan_sq
-    balance_gear_pan_by_k_shaft_pan = -active_pan * shaft_torque_pan_term
+    balance_gear_pan_by_k_shaft_pan = -active_pan * shaft_torque_pan_factor
     fp[1, 11] = -balance_gear_pan_by_k_shaft_pan * inverse_mass_pan  # accel_pan_by_k_shaft_pan
     # accel_gear_pan_by_k_shaft_pan
     fp[3, 11] = balance_gear_pan_by_k_shaft_pan * inverse_mass_gear_pan_slide_pan_sq
@@ -405,7 +408,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     omega_gear_pan_rate_of_i_pan_by_u_pan = omega_gear_pan * rate_of_i_pan_by_u_pan
     fp[4, 15] = -N_pan * omega_gear_pan_rate_of_i_pan_by_u_pan  # rate_of_i_pan_by_K_t_pan
     force_gear_pan = (K_t_pan * N_pan * i_pan - shaft_torque_pan
-        - slide_pan * (accel_gear_pan_by_omega_gear_pan_term + coulomb_torque_pan
+        - slide_pan * (accel_gear_pan_by_omega_gear_pan_factor + coulomb_torque_pan
         + omega_gear_pan_slide_pan * viscous_coefficient_pan))
     accel_gear_pan = force_gear_pan * inverse_mass_gear_pan_slide_pan_sq
     # accel_gear_pan_by_J_motor_pan
@@ -453,9 +456,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
 def outputs(t, x, u, p, y):
     """Write the measured signals into y.
 
-    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; y [2] in
-      OUTPUT_UNITS.
-    y: reading_theta_pan, reading_i_pan.
+    t, x [5], u [1], p [18]; y [2] in OUTPUT_UNITS.
     """
     theta_pan, i_pan = x[0], x[4]
     y[0] = theta_pan  # reading_theta_pan
@@ -466,8 +467,7 @@ def outputs(t, x, u, p, y):
 def output_jacobian(t, x, u, p, yx, yp):
     """Write the non-zero derivatives of outputs by state and parameter.
 
-    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; yx
-      [2, 5]; yp [2, 18].
+    t, x [5], u [1], p [18]; yx [2, 5]; yp [2, 18].
     """
     yx[0, 0] = 1.0  # reading_theta_pan_by_theta_pan
     yx[1, 4] = 1.0  # reading_i_pan_by_i_pan
@@ -477,7 +477,7 @@ def output_jacobian(t, x, u, p, yx, yp):
 def domain(p, bounds):
     """Write lower and upper bound of the state of every row of DOMAIN into bounds.
 
-    p [18] in the units of PARAMETERS; bounds [0, 2] in STATE_UNITS: lower, upper.
+    p [18]; bounds [0, 2] in STATE_UNITS: lower, upper.
     """
     return
 
@@ -486,44 +486,56 @@ def domain(p, bounds):
 def margins(p, margin):
     """Write by how much the parameters meet every row of REQUIREMENTS into margin.
 
-    p [18] in the units of PARAMETERS; margin [1] in units of what is compared.
-    margin: requirement_0.
+    p [18]; margin [1] in units of what is compared.
     """
     F_c_pan, F_s_pan = p[2], p[3]
     margin[0] = -F_c_pan + F_s_pan  # requirement_0
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def touching(separation, half_gap, upper, lower):
+    """Return side and activity of a contact: the face beyond half the gap, active if it pushes."""
+    side = 1.0 if separation > 0.0 else -1.0
+    if side * separation > half_gap:
+        torque = upper if side > 0.0 else lower
+        return side, (1.0 if side * torque > 0.0 else 0.0)
+    return 0.0, 0.0
+
+
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def breaking_away(slide, holding, forward, backward):
+    """Return the direction of a friction: if it sticks, that of a torque beyond breakaway."""
+    if slide == 0.0 and holding > forward:
+        return 1.0
+    if slide == 0.0 and -holding > backward:
+        return -1.0
+    return slide
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def implied_modes(t, x, u, p):
+    """Return the modes that a state implies, in the order of MODE_NAMES: contact from the
+    separation, sticking from the holding torque.
+    """
+    omega_gear_pan = x[3]
+    g = guard_values(t, x, u, p, 0.0, 0.0, 0.0)
+    side_pan, active_pan = touching(g[3], g[4], g[5], g[6])
+    slide_pan = np.sign(omega_gear_pan)
+    g = guard_values(t, x, u, p, slide_pan, side_pan, active_pan)
+    slide_pan = breaking_away(slide_pan, g[0], g[1], g[2])
+    return slide_pan, side_pan, active_pan
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def initial_modes(t, x, u, p, m):
-    """Find the modes of a state: contact from the separation, sticking from the holding torque."""
-    frictions = len(FRICTION_RATES)
-    contacts = (len(m) - frictions) // 2
-    g = np.empty(3 * frictions + 4 * contacts)
-    m[:] = 0.0
-    guards(t, x, u, p, m, g)
-    for k in range(contacts):
-        at = 3 * frictions + 4 * k
-        side = 1.0 if g[at] > 0.0 else -1.0
-        if side * g[at] > g[at + 1]:
-            torque = g[at + 2] if side > 0.0 else g[at + 3]
-            m[frictions + 2 * k] = side
-            m[frictions + 2 * k + 1] = 1.0 if side * torque > 0.0 else 0.0
-    for k in range(frictions):
-        m[k] = np.sign(x[FRICTION_RATES[k]])
-    guards(t, x, u, p, m, g)
-    for k in range(frictions):
-        if m[k] == 0.0 and g[3 * k] > g[3 * k + 1]:
-            m[k] = 1.0
-        elif m[k] == 0.0 and -g[3 * k] > g[3 * k + 2]:
-            m[k] = -1.0
+    """Write the modes that a state implies into m; see MODE_NAMES."""
+    m[0], m[1], m[2] = implied_modes(t, x, u, p)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def state_derivative(t, x, u, p, dx):
     """Write the time derivative of the state into dx, in the modes that the state implies."""
-    m = np.empty(len(MODE_NAMES))
-    initial_modes(t, x, u, p, m)
-    mode_derivative(t, x, u, p, m, dx)
+    mode_derivative(t, x, u, p, implied_modes(t, x, u, p), dx)
 
 
 # What the field calls some of these functions.
@@ -588,4 +600,4 @@ EFFECTS = (
     ("dc_motor", "pan", ("L_pan", "R_pan", "K_t_pan", "J_motor_pan", "N_pan"), (), (),
      "geared DC motor", "thesis Eq. 3.10, Eq. 3.11 with erratum 8", "", False),
 )
-# END sha256 8b25a37295a279918bafef55dcdbbb975afbb430f4fcfbf4bbeeeabf33ef3a50
+# END sha256 e21718c0a7ebf8ee0233fb8ced3e991f57204ac047108edfb0b912afd6837e1e

@@ -43,7 +43,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "49d58dccc2db34c2"
+MODEL_HASH = "7d8704cc2016505e"
 NAME = "payload"
 TITLE = "Pan-tilt platform of the thesis with its payload"
 # How many numbers `prepare` writes.
@@ -90,6 +90,8 @@ PARAMETERS = (
 )
 
 
+# Arguments, in SI: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS;
+# modes m as MODE_NAMES; c as `prepare` writes it. Lengths and shapes are in brackets.
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def constants(p):
     """Return what depends on the parameters alone."""
@@ -115,7 +117,7 @@ def constants(p):
 
 
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
-def mass_and_forces(t, x, u, p, m, c):
+def mass_and_forces(t, x, u, p, c):
     """Return mass matrix, forces and what else the functions below have in common."""
     theta_tilt, omega_pan, omega_tilt = x[1], x[2], x[3]
     tau_pan, tau_tilt = u[0], u[1]
@@ -142,9 +144,8 @@ def mass_and_forces(t, x, u, p, m, c):
 def prepare(p, c):
     """Write into c what prepared_derivative takes from the parameters alone.
 
-    p [14] in the units of PARAMETERS; c [8] of prepare.
-    c: inertia_pan_sin_cos_tilt, inertia_pan_sin_sq_tilt, coupling_cos_tilt, coupling_sin_tilt,
-      gravity_cos_tilt, gravity_sin_tilt, inertia_tilt, inertia_pan.
+    p [14]; c [8].
+    c: what `constants` returns, in its order.
     """
     values = constants(p)
     for k in range(PREPARED):
@@ -155,11 +156,9 @@ def prepare(p, c):
 def prepared_derivative(t, x, u, p, m, c, dx):
     """Write the time derivative of the state into dx in the modes m, c being prepared.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
-      see MODE_NAMES; c [8] of prepare; dx [4] in STATE_UNITS per s.
-    dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt.
+    t, x [4], u [2], p [14], m [0], c [8]; dx [4] in STATE_UNITS per s.
     """
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, c)
     force_pan, force_tilt, mass_pan, mass_pan_tilt = forces[2], forces[4], forces[5], forces[6]
     omega_pan, omega_tilt = x[2], x[3]
     inertia_tilt = c[6]
@@ -175,9 +174,7 @@ def prepared_derivative(t, x, u, p, m, c, dx):
 def mode_derivative(t, x, u, p, m, dx):
     """Write the time derivative of the state into dx in the modes m.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
-      see MODE_NAMES; dx [4] in STATE_UNITS per s.
-    dx: rate_of_theta_pan, rate_of_theta_tilt, accel_pan, accel_tilt.
+    t, x [4], u [2], p [14], m [0]; dx [4] in STATE_UNITS per s.
     """
     prepared_derivative(t, x, u, p, m, constants(p), dx)
 
@@ -186,8 +183,7 @@ def mode_derivative(t, x, u, p, m, dx):
 def guards(t, x, u, p, m, g):
     """Write holding and breakaway torques, gap separations and contact torques into g.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
-      see MODE_NAMES; g [0] in N m and rad.
+    t, x [4], u [2], p [14], m [0]; g [0] in N m and rad.
     """
     return
 
@@ -196,12 +192,11 @@ def guards(t, x, u, p, m, g):
 def energy(t, x, u, p, m, e):
     """Write stored energy in J, power in and dissipated power in W into e.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
-      see MODE_NAMES; e [3] in J, W and W.
+    t, x [4], u [2], p [14], m [0]; e [3] in J, W and W.
     e: stored, power_in, dissipated.
     """
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, c)
     cos_tilt, sin_tilt, mass_pan, mass_pan_tilt = forces[0], forces[1], forces[5], forces[6]
     omega_pan, omega_tilt = x[2], x[3]
     tau_pan, tau_tilt = u[0], u[1]
@@ -220,13 +215,12 @@ def energy(t, x, u, p, m, e):
 def equation_error(t, x, u, p, m, r):
     """Write torques that rows lack, then other states' rates, into r; x ends in accelerations.
 
-    t in s; x [6] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
-      see MODE_NAMES; r [2] in N m, then STATE_UNITS per s.
+    t, x [6], u [2], p [14], m [0]; r [2] in N m, then STATE_UNITS per s.
     x: STATE_NAMES, then given_accel_pan, given_accel_tilt.
     r: torque_pan, torque_tilt.
     """
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, c)
     force_pan, force_tilt, mass_pan, mass_pan_tilt = forces[2], forces[4], forces[5], forces[6]
     given_accel_pan, given_accel_tilt = x[4], x[5]
     inertia_tilt = c[6]
@@ -239,11 +233,10 @@ def equation_error(t, x, u, p, m, r):
 def mass_matrix(t, x, u, p, m, M):
     """Write the mass matrix of the joints, then of gear outputs, into M.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
-      see MODE_NAMES; M [2, 2] in kg m^2.
+    t, x [4], u [2], p [14], m [0]; M [2, 2] in kg m^2.
     """
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, c)
     mass_pan, mass_pan_tilt = forces[5], forces[6]
     inertia_tilt = c[6]
     M[0, 0] = mass_pan
@@ -256,12 +249,11 @@ def mass_matrix(t, x, u, p, m, M):
 def gravity_torque(t, x, u, p, m, G):
     """Write the torques that hold the machine against its weight into G.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
-      see MODE_NAMES; G [2] in N m.
+    t, x [4], u [2], p [14], m [0]; G [2] in N m.
     G: gravity_torque_pan, gravity_torque_tilt.
     """
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, c)
     minus_gravity_torque_tilt = forces[3]
     G[0] = 0.0  # gravity_torque_pan
     G[1] = -minus_gravity_torque_tilt  # gravity_torque_tilt
@@ -271,13 +263,10 @@ def gravity_torque(t, x, u, p, m, G):
 def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     """Write the non-zero derivatives of dx into fx, fu, fp and those of guards into gx, gp.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
-      see MODE_NAMES; fx [4, 4]; fu [4, 2]; fp [4, 14]; gx [0, 4]; gp [0, 14].
-    fx: rows and columns as STATE_NAMES.
-    fu: rows as STATE_NAMES, columns as INPUT_NAMES.
-    fp: rows as STATE_NAMES, columns as PARAMETERS.
-    gx: rows as g of guards, columns as STATE_NAMES.
-    gp: rows as g of guards, columns as PARAMETERS.
+    t, x [4], u [2], p [14], m [0]; fx [4, 4]; fu [4, 2]; fp [4, 14]; gx [0, 4]; gp [0, 14].
+    fx: rows and columns as STATE_NAMES; fu: rows as STATE_NAMES, columns as INPUT_NAMES; fp: rows
+      as STATE_NAMES, columns as PARAMETERS; gx: rows as g of guards, columns as STATE_NAMES; gp:
+      rows as g of guards, columns as PARAMETERS.
     Where fp or gx is empty, it and what follows it is not computed.
     """
     theta_tilt, omega_pan, omega_tilt = x[1], x[2], x[3]
@@ -312,9 +301,9 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     cos_tilt_inertia_pan_per_sin_tilt = cos_tilt * inertia_pan_per_sin_tilt
     coriolis_by_omega_pan = 2.0 * cos_tilt_inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt
     coriolis = coriolis_by_omega_pan * omega_pan
-    force_pan_term = cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt
-    force_pan_term_omega_tilt = force_pan_term * omega_tilt
-    force_pan = -b_pan * omega_pan - omega_tilt * (coriolis + force_pan_term_omega_tilt) + tau_pan
+    force_pan_factor = cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt
+    force_pan_factor_omega_tilt = force_pan_factor * omega_tilt
+    force_pan = -b_pan * omega_pan - omega_tilt * (coriolis + force_pan_factor_omega_tilt) + tau_pan
     gravity_cos_tilt_by_c_x_payload = gravity * m_payload
     gravity_cos_tilt = c_x_payload * gravity_cos_tilt_by_c_x_payload
     gravity_sin_tilt = c_z_payload * gravity_cos_tilt_by_c_x_payload
@@ -332,9 +321,9 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * twice_omega_pan)
     omega_tilt_sq = omega_tilt * omega_tilt
     balance_pan_by_theta_tilt = (-accel_pan * (cos_tilt_inertia_pan_per_sin_tilt
-        + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt) - accel_tilt * force_pan_term
+        + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt) - accel_tilt * force_pan_factor
         - coriolis_by_theta_tilt * omega_tilt + mass_pan_tilt * omega_tilt_sq)
-    balance_tilt_by_theta_tilt = (-accel_pan * force_pan_term
+    balance_tilt_by_theta_tilt = (-accel_pan * force_pan_factor
         + coriolis_by_theta_tilt * force_tilt_by_coriolis + cos_tilt * gravity_sin_tilt
         - gravity_cos_tilt * sin_tilt)
     fx[2, 1] = (inverse_determinant * (balance_pan_by_theta_tilt * inertia_tilt
@@ -349,7 +338,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     fx[3, 2] = (inverse_determinant * (-balance_pan_by_omega_pan * mass_pan_tilt
         + balance_tilt_by_omega_pan * mass_pan))  # accel_tilt_by_omega_pan
     fx[1, 3] = 1.0  # rate_of_theta_tilt_by_omega_tilt
-    balance_pan_by_omega_tilt = -coriolis - 2.0 * force_pan_term_omega_tilt
+    balance_pan_by_omega_tilt = -coriolis - 2.0 * force_pan_factor_omega_tilt
     fx[2, 3] = (inverse_determinant * (b_tilt * mass_pan_tilt
         + balance_pan_by_omega_tilt * inertia_tilt))  # accel_pan_by_omega_tilt
     fx[3, 3] = (inverse_determinant * (-b_tilt * mass_pan
@@ -491,9 +480,7 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
 def outputs(t, x, u, p, y):
     """Write the measured signals into y.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; y [2] in
-      OUTPUT_UNITS.
-    y: reading_theta_pan, reading_theta_tilt.
+    t, x [4], u [2], p [14]; y [2] in OUTPUT_UNITS.
     """
     theta_pan, theta_tilt = x[0], x[1]
     y[0] = theta_pan  # reading_theta_pan
@@ -504,8 +491,7 @@ def outputs(t, x, u, p, y):
 def output_jacobian(t, x, u, p, yx, yp):
     """Write the non-zero derivatives of outputs by state and parameter.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; yx
-      [2, 4]; yp [2, 14].
+    t, x [4], u [2], p [14]; yx [2, 4]; yp [2, 14].
     """
     yx[0, 0] = 1.0  # reading_theta_pan_by_theta_pan
     yx[1, 1] = 1.0  # reading_theta_tilt_by_theta_tilt
@@ -515,7 +501,7 @@ def output_jacobian(t, x, u, p, yx, yp):
 def domain(p, bounds):
     """Write lower and upper bound of the state of every row of DOMAIN into bounds.
 
-    p [14] in the units of PARAMETERS; bounds [0, 2] in STATE_UNITS: lower, upper.
+    p [14]; bounds [0, 2] in STATE_UNITS: lower, upper.
     """
     return
 
@@ -524,7 +510,7 @@ def domain(p, bounds):
 def margins(p, margin):
     """Write by how much the parameters meet every row of REQUIREMENTS into margin.
 
-    p [14] in the units of PARAMETERS; margin [0] in units of what is compared.
+    p [14]; margin [0] in units of what is compared.
     """
     return
 
@@ -664,4 +650,4 @@ EFFECTS = (
      "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
      "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
 )
-# END sha256 45856c2fa8e02f53d8d10d1458ebac3473d1371d88ffe279545e0824741ae6d4
+# END sha256 77f1ed0169b177196c8fd38f3b57f4cafddf27984033f0141df81c92af9a91e1

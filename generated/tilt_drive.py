@@ -60,7 +60,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "d4e9de38169b9507"
+MODEL_HASH = "4a2b93e3a6a178d5"
 NAME = "tilt_drive"
 TITLE = "Tilt drive of the thesis"
 # How many numbers `prepare` writes.
@@ -116,6 +116,8 @@ PARAMETERS = (
 )
 
 
+# Arguments, in SI: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS;
+# modes m as MODE_NAMES; c as `prepare` writes it. Lengths and shapes are in brackets.
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def constants(p):
     """Return what depends on the parameters alone."""
@@ -150,13 +152,12 @@ def constants(p):
 
 
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
-def mass_and_forces(t, x, u, p, m, c):
+def mass_and_forces(t, x, u, p, slide_tilt, c):
     """Return mass matrix, forces and what else the functions below have in common."""
     theta_tilt, omega_tilt, i_tilt = x[0], x[1], x[2]
     u_tilt = u[0]
     b_tilt, L_tilt, R_tilt, K_t_tilt, J_motor_tilt = p[4], p[5], p[6], p[7], p[8]
     b_motor_tilt, N_tilt = p[9], p[10]
-    slide_tilt = m[0]
     l_ground_tilt_sq_plus_r_arm_tilt_sq, linkage_cos_tilt, linkage_sin_tilt = c[0], c[1], c[2]
     lead_tilt_inverse, gravity_cos_tilt, gravity_sin_tilt, inertia_tilt = c[3], c[4], c[5], c[6]
     lowered_tilt, raised_tilt = c[7], c[8]
@@ -167,18 +168,18 @@ def mass_and_forces(t, x, u, p, m, c):
     length_tilt = (math.sqrt(-cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq
         - linkage_sin_tilt_sin_tilt))
     N_tilt_lead_tilt_inverse_pi_per_length_tilt = math.pi * N_tilt * lead_tilt_inverse / length_tilt
-    ratio_tilt_term = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
-    ratio_tilt = N_tilt_lead_tilt_inverse_pi_per_length_tilt * ratio_tilt_term
-    length_tilt_by_theta_tilt = 0.5 * ratio_tilt_term / length_tilt
+    ratio_tilt_factor = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
+    ratio_tilt = N_tilt_lead_tilt_inverse_pi_per_length_tilt * ratio_tilt_factor
+    length_tilt_by_theta_tilt = 0.5 * ratio_tilt_factor / length_tilt
     ratio_tilt_by_theta_tilt = (-math.pi * N_tilt * lead_tilt_inverse * length_tilt_by_theta_tilt
-        * ratio_tilt_term / (length_tilt * length_tilt)
+        * ratio_tilt_factor / (length_tilt * length_tilt)
         + N_tilt_lead_tilt_inverse_pi_per_length_tilt * (cos_tilt_linkage_cos_tilt
         + linkage_sin_tilt_sin_tilt))
     omega_tilt_sq = omega_tilt * omega_tilt
     carried_tilt_term = J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
     omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
-    carried_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
-    carried_tilt_term_3 = carried_tilt_term - carried_tilt_term_2 * ratio_tilt
+    carried_tilt_factor = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
+    carried_tilt_factor_2 = -carried_tilt_factor * ratio_tilt + carried_tilt_term
     b_tilt_omega_tilt = b_tilt * omega_tilt
     cos_tilt_gravity_cos_tilt = cos_tilt * gravity_cos_tilt
     gravity_sin_tilt_sin_tilt = gravity_sin_tilt * sin_tilt
@@ -191,28 +192,26 @@ def mass_and_forces(t, x, u, p, m, c):
     minus_gravity_torque_tilt = cos_tilt_gravity_cos_tilt + gravity_sin_tilt_sin_tilt
     load_torque_tilt = -b_tilt_omega_tilt + minus_gravity_torque_tilt
     carried_tilt = (-J_motor_tilt_ratio_tilt_sq * load_torque_tilt
-        - carried_tilt_term_3 * inertia_tilt)
+        - carried_tilt_factor_2 * inertia_tilt)
     carried_tilt_slide_tilt = carried_tilt * slide_tilt
-    force_tilt_term = (slide_tilt * (0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt
+    friction_torque_tilt = (slide_tilt * (0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt
         + lost_raising_tilt) + 0.5 * (lost_lowering_tilt
         + lost_raising_tilt) * abs(carried_tilt_slide_tilt)))
-    force_tilt = (-b_tilt_omega_tilt - carried_tilt_term_3 + cos_tilt_gravity_cos_tilt
-        - force_tilt_term + gravity_sin_tilt_sin_tilt)
+    force_tilt = (-b_tilt_omega_tilt - carried_tilt_factor_2 + cos_tilt_gravity_cos_tilt
+        - friction_torque_tilt + gravity_sin_tilt_sin_tilt)
     mass_tilt = J_motor_tilt_ratio_tilt_sq + inertia_tilt
     rate_of_i_tilt = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
-    return (cos_tilt, sin_tilt, ratio_tilt, omega_tilt_sq, carried_tilt_term, carried_tilt_term_2,
-        ratio_tilt_sq, minus_gravity_torque_tilt, load_torque_tilt, force_tilt_term, force_tilt,
-        mass_tilt, rate_of_i_tilt)
+    return (cos_tilt, sin_tilt, ratio_tilt, omega_tilt_sq, carried_tilt_term, carried_tilt_factor,
+        ratio_tilt_sq, minus_gravity_torque_tilt, load_torque_tilt, friction_torque_tilt,
+        force_tilt, mass_tilt, rate_of_i_tilt)
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def prepare(p, c):
     """Write into c what prepared_derivative takes from the parameters alone.
 
-    p [20] in the units of PARAMETERS; c [10] of prepare.
-    c: l_ground_tilt_sq_plus_r_arm_tilt_sq, linkage_cos_tilt, linkage_sin_tilt, lead_tilt_inverse,
-      gravity_cos_tilt, gravity_sin_tilt, inertia_tilt, lowered_tilt, raised_tilt,
-      raised_tilt_minus_lowered_tilt.
+    p [20]; c [10].
+    c: what `constants` returns, in its order.
     """
     values = constants(p)
     for k in range(PREPARED):
@@ -223,14 +222,12 @@ def prepare(p, c):
 def prepared_derivative(t, x, u, p, m, c, dx):
     """Write the time derivative of the state into dx in the modes m, c being prepared.
 
-    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
-      see MODE_NAMES; c [10] of prepare; dx [3] in STATE_UNITS per s.
-    dx: rate_of_theta_tilt, accel_tilt, rate_of_i_tilt.
+    t, x [3], u [1], p [20], m [1], c [10]; dx [3] in STATE_UNITS per s.
     """
-    forces = mass_and_forces(t, x, u, p, m, c)
+    slide_tilt = m[0]
+    forces = mass_and_forces(t, x, u, p, slide_tilt, c)
     force_tilt, mass_tilt, rate_of_i_tilt = forces[10], forces[11], forces[12]
     omega_tilt = x[1]
-    slide_tilt = m[0]
     dx[0] = omega_tilt  # rate_of_theta_tilt
     inverse_mass_tilt = 1.0 / mass_tilt
     dx[1] = force_tilt * inverse_mass_tilt * (slide_tilt * slide_tilt)  # accel_tilt
@@ -241,48 +238,51 @@ def prepared_derivative(t, x, u, p, m, c, dx):
 def mode_derivative(t, x, u, p, m, dx):
     """Write the time derivative of the state into dx in the modes m.
 
-    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
-      see MODE_NAMES; dx [3] in STATE_UNITS per s.
-    dx: rate_of_theta_tilt, accel_tilt, rate_of_i_tilt.
+    t, x [3], u [1], p [20], m [1]; dx [3] in STATE_UNITS per s.
     """
     prepared_derivative(t, x, u, p, m, constants(p), dx)
+
+
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def guard_values(t, x, u, p, slide_tilt):
+    """Return what `guards` writes, in modes that are given one by one."""
+    c = constants(p)
+    forces = mass_and_forces(t, x, u, p, slide_tilt, c)
+    ratio_tilt, carried_tilt_term, carried_tilt_factor = forces[2], forces[4], forces[5]
+    load_torque_tilt = forces[8]
+    lowered_tilt, raised_tilt, raised_tilt_minus_lowered_tilt = c[7], c[8], c[9]
+    transmitted_torque_tilt = carried_tilt_factor * ratio_tilt
+    holding_tilt = -carried_tilt_term + load_torque_tilt + transmitted_torque_tilt
+    forward_tilt_term = 0.5 * load_torque_tilt * (lowered_tilt + raised_tilt - 2.0)
+    abs_load_torque_tilt = abs(load_torque_tilt)
+    forward_tilt = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt - forward_tilt_term
+    backward_tilt = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt + forward_tilt_term
+    return holding_tilt, forward_tilt, backward_tilt
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def guards(t, x, u, p, m, g):
     """Write holding and breakaway torques, gap separations and contact torques into g.
 
-    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
-      see MODE_NAMES; g [3] in N m and rad.
+    t, x [3], u [1], p [20], m [1]; g [3] in N m and rad.
     g: holding_tilt, forward_tilt, backward_tilt.
     """
-    c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
-    ratio_tilt, carried_tilt_term, carried_tilt_term_2 = forces[2], forces[4], forces[5]
-    load_torque_tilt = forces[8]
-    lowered_tilt, raised_tilt, raised_tilt_minus_lowered_tilt = c[7], c[8], c[9]
-    transmitted_torque_tilt = carried_tilt_term_2 * ratio_tilt
-    g[0] = -carried_tilt_term + load_torque_tilt + transmitted_torque_tilt  # holding_tilt
-    forward_tilt_term = 0.5 * load_torque_tilt * (lowered_tilt + raised_tilt - 2.0)
-    abs_load_torque_tilt = abs(load_torque_tilt)
-    # forward_tilt
-    g[1] = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt - forward_tilt_term
-    # backward_tilt
-    g[2] = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt + forward_tilt_term
+    slide_tilt = m[0]
+    g[0], g[1], g[2] = guard_values(t, x, u, p, slide_tilt)
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def energy(t, x, u, p, m, e):
     """Write stored energy in J, power in and dissipated power in W into e.
 
-    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
-      see MODE_NAMES; e [3] in J, W and W.
+    t, x [3], u [1], p [20], m [1]; e [3] in J, W and W.
     e: stored, power_in, dissipated.
     """
+    slide_tilt = m[0]
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, slide_tilt, c)
     cos_tilt, sin_tilt, omega_tilt_sq, ratio_tilt_sq = forces[0], forces[1], forces[3], forces[6]
-    force_tilt_term, mass_tilt = forces[9], forces[11]
+    friction_torque_tilt, mass_tilt = forces[9], forces[11]
     omega_tilt, i_tilt = x[1], x[2]
     u_tilt = u[0]
     b_tilt, L_tilt, R_tilt, b_motor_tilt = p[4], p[5], p[6], p[9]
@@ -293,20 +293,20 @@ def energy(t, x, u, p, m, e):
     e[1] = i_tilt * u_tilt  # power_in
     winding_loss_tilt = R_tilt * i_tilt_sq
     e[2] = (b_motor_tilt * omega_tilt_sq * ratio_tilt_sq + b_tilt * omega_tilt_sq
-        + force_tilt_term * omega_tilt + winding_loss_tilt)  # dissipated
+        + friction_torque_tilt * omega_tilt + winding_loss_tilt)  # dissipated
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def equation_error(t, x, u, p, m, r):
     """Write torques that rows lack, then other states' rates, into r; x ends in accelerations.
 
-    t in s; x [4] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
-      see MODE_NAMES; r [2] in N m, then STATE_UNITS per s.
+    t, x [4], u [1], p [20], m [1]; r [2] in N m, then STATE_UNITS per s.
     x: STATE_NAMES, then given_accel_tilt.
     r: torque_tilt, rate_of_i_tilt.
     """
+    slide_tilt = m[0]
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, slide_tilt, c)
     force_tilt, mass_tilt, rate_of_i_tilt = forces[10], forces[11], forces[12]
     given_accel_tilt = x[3]
     r[0] = -force_tilt + given_accel_tilt * mass_tilt  # torque_tilt
@@ -317,11 +317,11 @@ def equation_error(t, x, u, p, m, r):
 def mass_matrix(t, x, u, p, m, M):
     """Write the mass matrix of the joints, then of gear outputs, into M.
 
-    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
-      see MODE_NAMES; M [1, 1] in kg m^2.
+    t, x [3], u [1], p [20], m [1]; M [1, 1] in kg m^2.
     """
+    slide_tilt = m[0]
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, slide_tilt, c)
     mass_tilt = forces[11]
     M[0, 0] = mass_tilt
 
@@ -330,12 +330,12 @@ def mass_matrix(t, x, u, p, m, M):
 def gravity_torque(t, x, u, p, m, G):
     """Write the torques that hold the machine against its weight into G.
 
-    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
-      see MODE_NAMES; G [1] in N m.
+    t, x [3], u [1], p [20], m [1]; G [1] in N m.
     G: gravity_torque_tilt.
     """
+    slide_tilt = m[0]
     c = constants(p)
-    forces = mass_and_forces(t, x, u, p, m, c)
+    forces = mass_and_forces(t, x, u, p, slide_tilt, c)
     minus_gravity_torque_tilt = forces[7]
     G[0] = -minus_gravity_torque_tilt  # gravity_torque_tilt
 
@@ -344,13 +344,10 @@ def gravity_torque(t, x, u, p, m, G):
 def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     """Write the non-zero derivatives of dx into fx, fu, fp and those of guards into gx, gp.
 
-    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
-      see MODE_NAMES; fx [3, 3]; fu [3, 1]; fp [3, 20]; gx [3, 3]; gp [3, 20].
-    fx: rows and columns as STATE_NAMES.
-    fu: rows as STATE_NAMES, columns as INPUT_NAMES.
-    fp: rows as STATE_NAMES, columns as PARAMETERS.
-    gx: rows as g of guards, columns as STATE_NAMES.
-    gp: rows as g of guards, columns as PARAMETERS.
+    t, x [3], u [1], p [20], m [1]; fx [3, 3]; fu [3, 1]; fp [3, 20]; gx [3, 3]; gp [3, 20].
+    fx: rows and columns as STATE_NAMES; fu: rows as STATE_NAMES, columns as INPUT_NAMES; fp: rows
+      as STATE_NAMES, columns as PARAMETERS; gx: rows as g of guards, columns as STATE_NAMES; gp:
+      rows as g of guards, columns as PARAMETERS.
     Where fp or gx is empty, it and what follows it is not computed.
     """
     theta_tilt, omega_tilt, i_tilt = x[0], x[1], x[2]
@@ -382,37 +379,38 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     lead_tilt_inverse = 1.0 / lead_tilt
     lead_tilt_inverse_pi = math.pi * lead_tilt_inverse
     lead_tilt_inverse_pi_length_tilt_inverse = lead_tilt_inverse_pi * length_tilt_inverse
-    ratio_tilt_by_N_tilt_term = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
-    ratio_tilt_by_N_tilt = lead_tilt_inverse_pi_length_tilt_inverse * ratio_tilt_by_N_tilt_term
+    ratio_tilt_by_N_tilt_factor = -cos_tilt * linkage_sin_tilt + linkage_cos_tilt * sin_tilt
+    ratio_tilt_by_N_tilt = lead_tilt_inverse_pi_length_tilt_inverse * ratio_tilt_by_N_tilt_factor
     ratio_tilt = N_tilt * ratio_tilt_by_N_tilt
     ratio_tilt_sq = ratio_tilt * ratio_tilt
     J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
     mass_tilt = J_motor_tilt_ratio_tilt_sq + inertia_tilt
     inverse_mass_tilt = 1.0 / mass_tilt
     inverse_mass_tilt_slide_tilt_sq = inverse_mass_tilt * (slide_tilt * slide_tilt)
-    ratio_tilt_by_theta_tilt_term = cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt
-    ratio_tilt_by_theta_tilt_term_2 = (lead_tilt_inverse_pi_length_tilt_inverse
-        * ratio_tilt_by_theta_tilt_term)
+    ratio_tilt_by_theta_tilt_factor = cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt
+    ratio_tilt_by_theta_tilt_factor_2 = (lead_tilt_inverse_pi_length_tilt_inverse
+        * ratio_tilt_by_theta_tilt_factor)
     half_length_tilt_inverse = 0.5 * length_tilt_inverse
-    length_tilt_by_theta_tilt = half_length_tilt_inverse * ratio_tilt_by_N_tilt_term
+    length_tilt_by_theta_tilt = half_length_tilt_inverse * ratio_tilt_by_N_tilt_factor
     length_tilt_inverse_sq = 1.0 / (length_tilt * length_tilt)
     lead_tilt_inverse_pi_length_tilt_inverse_sq = lead_tilt_inverse_pi * length_tilt_inverse_sq
-    ratio_tilt_by_theta_tilt_term_3 = (lead_tilt_inverse_pi_length_tilt_inverse_sq
-        * ratio_tilt_by_N_tilt_term)
-    ratio_tilt_by_theta_tilt_term_4 = length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_term_3
-    ratio_tilt_by_theta_tilt = (N_tilt * ratio_tilt_by_theta_tilt_term_2
-        - N_tilt * ratio_tilt_by_theta_tilt_term_4)
+    ratio_tilt_by_theta_tilt_factor_3 = (lead_tilt_inverse_pi_length_tilt_inverse_sq
+        * ratio_tilt_by_N_tilt_factor)
+    ratio_tilt_by_theta_tilt_factor_4 = (length_tilt_by_theta_tilt
+        * ratio_tilt_by_theta_tilt_factor_3)
+    ratio_tilt_by_theta_tilt = (N_tilt * ratio_tilt_by_theta_tilt_factor_2
+        - N_tilt * ratio_tilt_by_theta_tilt_factor_4)
     length_tilt_inverse_cubed = 1.0 / (length_tilt * length_tilt * length_tilt)
     quarter_length_tilt_inverse_cubed = 0.25 * length_tilt_inverse_cubed
     length_tilt_by_theta_tilt_by_theta_tilt = (half_length_tilt_inverse
-        * ratio_tilt_by_theta_tilt_term - quarter_length_tilt_inverse_cubed
-        * (ratio_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt_term))
-    N_tilt_ratio_tilt_by_theta_tilt_term = N_tilt * ratio_tilt_by_theta_tilt_term
-    ratio_tilt_by_theta_tilt_by_theta_tilt_term = (N_tilt_ratio_tilt_by_theta_tilt_term
+        * ratio_tilt_by_theta_tilt_factor - quarter_length_tilt_inverse_cubed
+        * (ratio_tilt_by_N_tilt_factor * ratio_tilt_by_N_tilt_factor))
+    N_tilt_ratio_tilt_by_theta_tilt_factor = N_tilt * ratio_tilt_by_theta_tilt_factor
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term = (N_tilt_ratio_tilt_by_theta_tilt_factor
         * lead_tilt_inverse_pi_length_tilt_inverse_sq)
-    ratio_tilt_by_length_tilt = -N_tilt * ratio_tilt_by_theta_tilt_term_3
+    ratio_tilt_by_length_tilt = -N_tilt * ratio_tilt_by_theta_tilt_factor_3
     ratio_tilt_by_theta_tilt_by_length_tilt = (2.0 * math.pi * N_tilt * lead_tilt_inverse
-        * length_tilt_by_theta_tilt * length_tilt_inverse_cubed * ratio_tilt_by_N_tilt_term
+        * length_tilt_by_theta_tilt * length_tilt_inverse_cubed * ratio_tilt_by_N_tilt_factor
         - ratio_tilt_by_theta_tilt_by_theta_tilt_term)
     ratio_tilt_by_theta_tilt_by_theta_tilt = (length_tilt_by_theta_tilt
         * ratio_tilt_by_theta_tilt_by_length_tilt - length_tilt_by_theta_tilt
@@ -433,66 +431,71 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     gravity_sin_tilt = c_z_payload * gravity_cos_tilt_by_c_x_payload
     gravity_cos_tilt = c_x_payload * gravity_cos_tilt_by_c_x_payload
     gravity_cos_tilt_sin_tilt = gravity_cos_tilt * sin_tilt
-    carried_tilt_by_theta_tilt_term = -cos_tilt * gravity_sin_tilt + gravity_cos_tilt_sin_tilt
+    carried_tilt_by_theta_tilt_factor = -cos_tilt * gravity_sin_tilt + gravity_cos_tilt_sin_tilt
     b_tilt_omega_tilt = b_tilt * omega_tilt
     load_torque_tilt = (-b_tilt_omega_tilt + cos_tilt * gravity_cos_tilt
         + gravity_sin_tilt * sin_tilt)
     twice_J_motor_tilt_ratio_tilt = 2.0 * J_motor_tilt_ratio_tilt
     carried_tilt_by_ratio_tilt = -load_torque_tilt * twice_J_motor_tilt_ratio_tilt
-    carried_tilt_by_theta_tilt = (J_motor_tilt_ratio_tilt_sq * carried_tilt_by_theta_tilt_term
+    carried_tilt_by_theta_tilt = (J_motor_tilt_ratio_tilt_sq * carried_tilt_by_theta_tilt_factor
         + carried_tilt_by_ratio_tilt * ratio_tilt_by_theta_tilt
         + driving_torque_tilt_by_theta_tilt * inertia_tilt)
     d_screw_tilt_pi = math.pi * d_screw_tilt
     f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
     d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt = d_screw_tilt_pi + f_screw_tilt_lead_tilt
-    lowered_tilt_term = 1.0 / d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt
+    lowered_tilt_factor = 1.0 / d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt
     d_screw_tilt_pi_f_screw_tilt = d_screw_tilt_pi * f_screw_tilt
     d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt = d_screw_tilt_pi_f_screw_tilt - lead_tilt
-    lowered_tilt_term_2 = d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt * lowered_tilt_term
+    lowered_tilt_factor_2 = d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt * lowered_tilt_factor
     d_screw_tilt_pi_lead_tilt_inverse = d_screw_tilt_pi * lead_tilt_inverse
-    lowered_tilt = -d_screw_tilt_pi_lead_tilt_inverse * lowered_tilt_term_2
+    lowered_tilt = -d_screw_tilt_pi_lead_tilt_inverse * lowered_tilt_factor_2
     one_minus_lowered_tilt = 1.0 - lowered_tilt
-    lost_lowering_tilt_by_theta_tilt_term = J_motor_tilt_ratio_tilt_sq + inertia_tilt * lowered_tilt
-    lost_lowering_tilt_by_theta_tilt_term_2 = (one_minus_lowered_tilt * (0.0
-        if lost_lowering_tilt_by_theta_tilt_term == 0
-        else math.copysign(1, lost_lowering_tilt_by_theta_tilt_term))
-        / (lost_lowering_tilt_by_theta_tilt_term * lost_lowering_tilt_by_theta_tilt_term))
-    lost_lowering_tilt_by_ratio_tilt = (-lost_lowering_tilt_by_theta_tilt_term_2
+    lost_lowering_tilt_by_theta_tilt_denominator = (J_motor_tilt_ratio_tilt_sq
+        + inertia_tilt * lowered_tilt)
+    lost_lowering_tilt_by_theta_tilt_factor = (one_minus_lowered_tilt * (0.0
+        if lost_lowering_tilt_by_theta_tilt_denominator == 0.0
+        else math.copysign(1.0, lost_lowering_tilt_by_theta_tilt_denominator))
+        / (lost_lowering_tilt_by_theta_tilt_denominator
+        * lost_lowering_tilt_by_theta_tilt_denominator))
+    lost_lowering_tilt_by_ratio_tilt = (-lost_lowering_tilt_by_theta_tilt_factor
         * twice_J_motor_tilt_ratio_tilt)
     lost_lowering_tilt_by_theta_tilt = lost_lowering_tilt_by_ratio_tilt * ratio_tilt_by_theta_tilt
     d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt = d_screw_tilt_pi - f_screw_tilt_lead_tilt
-    raised_tilt_term = 1.0 / d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt
+    raised_tilt_factor = 1.0 / d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt
     d_screw_tilt_pi_f_screw_tilt_plus_lead_tilt = d_screw_tilt_pi_f_screw_tilt + lead_tilt
-    raised_tilt_term_2 = d_screw_tilt_pi_f_screw_tilt_plus_lead_tilt * raised_tilt_term
-    raised_tilt = d_screw_tilt_pi_lead_tilt_inverse * raised_tilt_term_2
+    raised_tilt_factor_2 = d_screw_tilt_pi_f_screw_tilt_plus_lead_tilt * raised_tilt_factor
+    raised_tilt = d_screw_tilt_pi_lead_tilt_inverse * raised_tilt_factor_2
     raised_tilt_minus_one = raised_tilt - 1.0
-    lost_raising_tilt_by_theta_tilt_term = J_motor_tilt_ratio_tilt_sq + inertia_tilt * raised_tilt
-    lost_raising_tilt_by_theta_tilt_term_2 = (raised_tilt_minus_one
-        / (lost_raising_tilt_by_theta_tilt_term * lost_raising_tilt_by_theta_tilt_term))
-    lost_raising_tilt_by_ratio_tilt = (-lost_raising_tilt_by_theta_tilt_term_2
+    lost_raising_tilt_by_theta_tilt_denominator = (J_motor_tilt_ratio_tilt_sq
+        + inertia_tilt * raised_tilt)
+    lost_raising_tilt_by_theta_tilt_factor = (raised_tilt_minus_one
+        / (lost_raising_tilt_by_theta_tilt_denominator
+        * lost_raising_tilt_by_theta_tilt_denominator))
+    lost_raising_tilt_by_ratio_tilt = (-lost_raising_tilt_by_theta_tilt_factor
         * twice_J_motor_tilt_ratio_tilt)
     lost_raising_tilt_by_theta_tilt = lost_raising_tilt_by_ratio_tilt * ratio_tilt_by_theta_tilt
     minus_holding_tilt_by_J_motor_tilt = omega_tilt_sq_ratio_tilt_by_theta_tilt * ratio_tilt
-    carried_tilt_term = (J_motor_tilt * minus_holding_tilt_by_J_motor_tilt
+    carried_tilt_factor = (J_motor_tilt * minus_holding_tilt_by_J_motor_tilt
         - ratio_tilt * (K_t_tilt * i_tilt - b_motor_tilt_omega_tilt_ratio_tilt))
-    lost_lowering_tilt_term = 1.0 / abs(lost_lowering_tilt_by_theta_tilt_term)
-    lost_lowering_tilt = lost_lowering_tilt_term * one_minus_lowered_tilt
-    lost_raising_tilt_by_theta_tilt_term_inverse = 1.0 / lost_raising_tilt_by_theta_tilt_term
-    lost_raising_tilt = lost_raising_tilt_by_theta_tilt_term_inverse * raised_tilt_minus_one
+    lost_lowering_tilt_factor = 1.0 / abs(lost_lowering_tilt_by_theta_tilt_denominator)
+    lost_lowering_tilt = lost_lowering_tilt_factor * one_minus_lowered_tilt
+    lost_raising_tilt_factor = 1.0 / lost_raising_tilt_by_theta_tilt_denominator
+    lost_raising_tilt = lost_raising_tilt_factor * raised_tilt_minus_one
     lost_lowering_tilt_plus_lost_raising_tilt = lost_lowering_tilt + lost_raising_tilt
-    carried_tilt = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt - carried_tilt_term * inertia_tilt
+    carried_tilt = (-J_motor_tilt_ratio_tilt_sq * load_torque_tilt
+        - carried_tilt_factor * inertia_tilt)
     carried_tilt_slide_tilt = carried_tilt * slide_tilt
     abs_carried_tilt_slide_tilt = abs(carried_tilt_slide_tilt)
     half_abs_carried_tilt_slide_tilt = 0.5 * abs_carried_tilt_slide_tilt
-    force_tilt_term = -0.5 * lost_lowering_tilt + 0.5 * lost_raising_tilt
-    force_tilt = (-b_tilt_omega_tilt - carried_tilt_term + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt - slide_tilt * (carried_tilt_slide_tilt * force_tilt_term
+    force_tilt_factor = -0.5 * lost_lowering_tilt + 0.5 * lost_raising_tilt
+    force_tilt = (-b_tilt_omega_tilt - carried_tilt_factor + cos_tilt * gravity_cos_tilt
+        + gravity_sin_tilt * sin_tilt - slide_tilt * (carried_tilt_slide_tilt * force_tilt_factor
         + half_abs_carried_tilt_slide_tilt * lost_lowering_tilt_plus_lost_raising_tilt))
     accel_tilt = force_tilt * inverse_mass_tilt_slide_tilt_sq
     accel_tilt_twice_J_motor_tilt_ratio_tilt = accel_tilt * twice_J_motor_tilt_ratio_tilt
-    force_tilt_by_carried_tilt = (-slide_tilt * (force_tilt_term * slide_tilt
+    force_tilt_by_carried_tilt = (-slide_tilt * (force_tilt_factor * slide_tilt
         + 0.5 * lost_lowering_tilt_plus_lost_raising_tilt * slide_tilt * (0.0
-        if carried_tilt_slide_tilt == 0 else math.copysign(1, carried_tilt_slide_tilt))))
+        if carried_tilt_slide_tilt == 0.0 else math.copysign(1.0, carried_tilt_slide_tilt))))
     half_carried_tilt_slide_tilt = 0.5 * carried_tilt_slide_tilt
     force_tilt_by_lost_lowering_tilt = (-slide_tilt * (0.5 * abs_carried_tilt_slide_tilt
         - half_carried_tilt_slide_tilt))
@@ -509,12 +512,12 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     # rate_of_i_tilt_by_theta_tilt
     fx[2, 0] = -K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_theta_tilt
     fx[0, 1] = 1.0  # rate_of_theta_tilt_by_omega_tilt
-    carried_tilt_by_omega_tilt_term = (2.0 * J_motor_tilt * omega_tilt_ratio_tilt
+    carried_tilt_by_omega_tilt_factor = (2.0 * J_motor_tilt * omega_tilt_ratio_tilt
         * ratio_tilt_by_theta_tilt + b_motor_tilt * ratio_tilt_sq)
     carried_tilt_by_omega_tilt = (J_motor_tilt_ratio_tilt_sq * b_tilt
-        - carried_tilt_by_omega_tilt_term * inertia_tilt)
-    b_tilt_plus_carried_tilt_by_omega_tilt_term = b_tilt + carried_tilt_by_omega_tilt_term
-    fx[1, 1] = (inverse_mass_tilt_slide_tilt_sq * (-b_tilt_plus_carried_tilt_by_omega_tilt_term
+        - carried_tilt_by_omega_tilt_factor * inertia_tilt)
+    b_tilt_plus_carried_tilt_by_omega_tilt_factor = b_tilt + carried_tilt_by_omega_tilt_factor
+    fx[1, 1] = (inverse_mass_tilt_slide_tilt_sq * (-b_tilt_plus_carried_tilt_by_omega_tilt_factor
         + carried_tilt_by_omega_tilt * force_tilt_by_carried_tilt))  # accel_tilt_by_omega_tilt
     driving_torque_tilt_by_i_tilt = K_t_tilt * ratio_tilt
     # rate_of_i_tilt_by_omega_tilt
@@ -533,10 +536,10 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     accel_tilt_by_gravity_sin_tilt = (inverse_mass_tilt_slide_tilt_sq
         * (carried_tilt_by_gravity_sin_tilt * force_tilt_by_carried_tilt + sin_tilt))
     accel_tilt_by_inertia_tilt = -accel_tilt * inverse_mass_tilt_slide_tilt_sq
-    lost_lowering_tilt_by_load_inertia_tilt = (-lost_lowering_tilt_by_theta_tilt_term_2
+    lost_lowering_tilt_by_load_inertia_tilt = (-lost_lowering_tilt_by_theta_tilt_factor
         * lowered_tilt)
-    lost_raising_tilt_by_load_inertia_tilt = -lost_raising_tilt_by_theta_tilt_term_2 * raised_tilt
-    accel_tilt_by_load_inertia_tilt = (inverse_mass_tilt_slide_tilt_sq * (-carried_tilt_term
+    lost_raising_tilt_by_load_inertia_tilt = -lost_raising_tilt_by_theta_tilt_factor * raised_tilt
+    accel_tilt_by_load_inertia_tilt = (inverse_mass_tilt_slide_tilt_sq * (-carried_tilt_factor
         * force_tilt_by_carried_tilt + force_tilt_by_lost_lowering_tilt
         * lost_lowering_tilt_by_load_inertia_tilt + force_tilt_by_lost_raising_tilt
         * lost_raising_tilt_by_load_inertia_tilt))
@@ -574,8 +577,8 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     fp[2, 7] = -omega_tilt_ratio_tilt * rate_of_i_tilt_by_u_tilt  # rate_of_i_tilt_by_K_t_tilt
     carried_tilt_by_J_motor_tilt = (-inertia_tilt * minus_holding_tilt_by_J_motor_tilt
         - load_torque_tilt * ratio_tilt_sq)
-    lost_lowering_tilt_by_J_motor_tilt = -lost_lowering_tilt_by_theta_tilt_term_2 * ratio_tilt_sq
-    lost_raising_tilt_by_J_motor_tilt = -lost_raising_tilt_by_theta_tilt_term_2 * ratio_tilt_sq
+    lost_lowering_tilt_by_J_motor_tilt = -lost_lowering_tilt_by_theta_tilt_factor * ratio_tilt_sq
+    lost_raising_tilt_by_J_motor_tilt = -lost_raising_tilt_by_theta_tilt_factor * ratio_tilt_sq
     fp[1, 8] = (inverse_mass_tilt_slide_tilt_sq * (-accel_tilt * ratio_tilt_sq
         + carried_tilt_by_J_motor_tilt * force_tilt_by_carried_tilt
         + force_tilt_by_lost_lowering_tilt * lost_lowering_tilt_by_J_motor_tilt
@@ -586,8 +589,8 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     # accel_tilt_by_b_motor_tilt
     fp[1, 9] = (inverse_mass_tilt_slide_tilt_sq * (carried_tilt_by_b_motor_tilt
         * force_tilt_by_carried_tilt + driving_torque_tilt_by_b_motor_tilt))
-    ratio_tilt_by_theta_tilt_by_N_tilt = (ratio_tilt_by_theta_tilt_term_2
-        - ratio_tilt_by_theta_tilt_term_4)
+    ratio_tilt_by_theta_tilt_by_N_tilt = (ratio_tilt_by_theta_tilt_factor_2
+        - ratio_tilt_by_theta_tilt_factor_4)
     driving_torque_tilt_by_N_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
         * ratio_tilt_by_theta_tilt_by_N_tilt + force_tilt_by_ratio_tilt * ratio_tilt_by_N_tilt)
     carried_tilt_by_N_tilt = (carried_tilt_by_ratio_tilt * ratio_tilt_by_N_tilt
@@ -601,38 +604,38 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * lost_raising_tilt_by_N_tilt))  # accel_tilt_by_N_tilt
     # rate_of_i_tilt_by_N_tilt
     fp[2, 10] = -K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_N_tilt
-    lost_lowering_tilt_by_lowered_tilt = (-inertia_tilt * lost_lowering_tilt_by_theta_tilt_term_2
-        - lost_lowering_tilt_term)
+    lost_lowering_tilt_by_lowered_tilt = (-inertia_tilt * lost_lowering_tilt_by_theta_tilt_factor
+        - lost_lowering_tilt_factor)
     accel_tilt_by_lowered_tilt = (force_tilt_by_lost_lowering_tilt * inverse_mass_tilt_slide_tilt_sq
         * lost_lowering_tilt_by_lowered_tilt)
-    lost_raising_tilt_by_raised_tilt = (-inertia_tilt * lost_raising_tilt_by_theta_tilt_term_2
-        + lost_raising_tilt_by_theta_tilt_term_inverse)
+    lost_raising_tilt_by_raised_tilt = (-inertia_tilt * lost_raising_tilt_by_theta_tilt_factor
+        + lost_raising_tilt_factor)
     accel_tilt_by_raised_tilt = (force_tilt_by_lost_raising_tilt * inverse_mass_tilt_slide_tilt_sq
         * lost_raising_tilt_by_raised_tilt)
-    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
-    lowered_tilt_by_lead_tilt_term = (1.0 / (d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt
+    lead_tilt_inverse_lowered_tilt_factor = lead_tilt_inverse * lowered_tilt_factor
+    lowered_tilt_by_lead_tilt_factor = (1.0 / (d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt
         * d_screw_tilt_pi_plus_f_screw_tilt_lead_tilt))
     lead_tilt_inverse_sq = 1.0 / (lead_tilt * lead_tilt)
     d_screw_tilt_pi_lead_tilt_inverse_sq = d_screw_tilt_pi * lead_tilt_inverse_sq
-    lowered_tilt_by_lead_tilt = (d_screw_tilt_pi * lead_tilt_inverse_lowered_tilt_term
+    lowered_tilt_by_lead_tilt = (d_screw_tilt_pi * lead_tilt_inverse_lowered_tilt_factor
         + d_screw_tilt_pi_f_screw_tilt * d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt
-        * lead_tilt_inverse * lowered_tilt_by_lead_tilt_term + d_screw_tilt_pi_lead_tilt_inverse_sq
-        * lowered_tilt_term_2)
-    lead_tilt_inverse_raised_tilt_term = lead_tilt_inverse * raised_tilt_term
-    raised_tilt_by_lead_tilt_term = (d_screw_tilt_pi_f_screw_tilt_plus_lead_tilt
+        * lead_tilt_inverse * lowered_tilt_by_lead_tilt_factor
+        + d_screw_tilt_pi_lead_tilt_inverse_sq * lowered_tilt_factor_2)
+    lead_tilt_inverse_raised_tilt_factor = lead_tilt_inverse * raised_tilt_factor
+    raised_tilt_by_lead_tilt_factor = (d_screw_tilt_pi_f_screw_tilt_plus_lead_tilt
         / (d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt
         * d_screw_tilt_pi_minus_f_screw_tilt_lead_tilt))
-    raised_tilt_by_lead_tilt_term_2 = lead_tilt_inverse * raised_tilt_by_lead_tilt_term
-    raised_tilt_by_lead_tilt = (d_screw_tilt_pi * lead_tilt_inverse_raised_tilt_term
-        + d_screw_tilt_pi_f_screw_tilt * raised_tilt_by_lead_tilt_term_2
-        - d_screw_tilt_pi_lead_tilt_inverse_sq * raised_tilt_term_2)
+    raised_tilt_by_lead_tilt_factor_2 = lead_tilt_inverse * raised_tilt_by_lead_tilt_factor
+    raised_tilt_by_lead_tilt = (d_screw_tilt_pi * lead_tilt_inverse_raised_tilt_factor
+        + d_screw_tilt_pi_f_screw_tilt * raised_tilt_by_lead_tilt_factor_2
+        - d_screw_tilt_pi_lead_tilt_inverse_sq * raised_tilt_factor_2)
     lead_tilt_inverse_sq_length_tilt_inverse_pi = (math.pi * lead_tilt_inverse_sq
         * length_tilt_inverse)
     ratio_tilt_by_lead_tilt = (-N_tilt * lead_tilt_inverse_sq_length_tilt_inverse_pi
-        * ratio_tilt_by_N_tilt_term)
+        * ratio_tilt_by_N_tilt_factor)
     ratio_tilt_by_theta_tilt_by_lead_tilt = (math.pi * N_tilt * lead_tilt_inverse_sq
-        * length_tilt_by_theta_tilt * length_tilt_inverse_sq * ratio_tilt_by_N_tilt_term
-        - N_tilt_ratio_tilt_by_theta_tilt_term * lead_tilt_inverse_sq_length_tilt_inverse_pi)
+        * length_tilt_by_theta_tilt * length_tilt_inverse_sq * ratio_tilt_by_N_tilt_factor
+        - N_tilt_ratio_tilt_by_theta_tilt_factor * lead_tilt_inverse_sq_length_tilt_inverse_pi)
     driving_torque_tilt_by_lead_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
         * ratio_tilt_by_theta_tilt_by_lead_tilt + force_tilt_by_ratio_tilt
         * ratio_tilt_by_lead_tilt)
@@ -653,36 +656,37 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     d_screw_tilt_pi_sq_f_screw_tilt = d_screw_tilt_pi_sq * f_screw_tilt
     lowered_tilt_by_d_screw_tilt = ((math.pi * math.pi) * d_screw_tilt
         * d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt * lead_tilt_inverse
-        * lowered_tilt_by_lead_tilt_term - d_screw_tilt_pi_sq_f_screw_tilt
-        * lead_tilt_inverse_lowered_tilt_term - lead_tilt_inverse_pi * lowered_tilt_term_2)
-    raised_tilt_by_d_screw_tilt = (-d_screw_tilt_pi_sq * raised_tilt_by_lead_tilt_term_2
-        + d_screw_tilt_pi_sq_f_screw_tilt * lead_tilt_inverse_raised_tilt_term
-        + lead_tilt_inverse_pi * raised_tilt_term_2)
+        * lowered_tilt_by_lead_tilt_factor - d_screw_tilt_pi_sq_f_screw_tilt
+        * lead_tilt_inverse_lowered_tilt_factor - lead_tilt_inverse_pi * lowered_tilt_factor_2)
+    raised_tilt_by_d_screw_tilt = (-d_screw_tilt_pi_sq * raised_tilt_by_lead_tilt_factor_2
+        + d_screw_tilt_pi_sq_f_screw_tilt * lead_tilt_inverse_raised_tilt_factor
+        + lead_tilt_inverse_pi * raised_tilt_factor_2)
     fp[1, 12] = (accel_tilt_by_lowered_tilt * lowered_tilt_by_d_screw_tilt
         + accel_tilt_by_raised_tilt * raised_tilt_by_d_screw_tilt)  # accel_tilt_by_d_screw_tilt
     d_screw_tilt_sq_pi_sq = (math.pi * math.pi) * (d_screw_tilt * d_screw_tilt)
     lowered_tilt_by_f_screw_tilt = (math.pi * d_screw_tilt
-        * d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt * lowered_tilt_by_lead_tilt_term
-        - d_screw_tilt_sq_pi_sq * lead_tilt_inverse_lowered_tilt_term)
-    raised_tilt_by_f_screw_tilt = (d_screw_tilt_pi * raised_tilt_by_lead_tilt_term
-        + d_screw_tilt_sq_pi_sq * lead_tilt_inverse_raised_tilt_term)
+        * d_screw_tilt_pi_f_screw_tilt_minus_lead_tilt * lowered_tilt_by_lead_tilt_factor
+        - d_screw_tilt_sq_pi_sq * lead_tilt_inverse_lowered_tilt_factor)
+    raised_tilt_by_f_screw_tilt = (d_screw_tilt_pi * raised_tilt_by_lead_tilt_factor
+        + d_screw_tilt_sq_pi_sq * lead_tilt_inverse_raised_tilt_factor)
     fp[1, 13] = (accel_tilt_by_lowered_tilt * lowered_tilt_by_f_screw_tilt
         + accel_tilt_by_raised_tilt * raised_tilt_by_f_screw_tilt)  # accel_tilt_by_f_screw_tilt
     cos_tilt_half_length_tilt_inverse = cos_tilt * half_length_tilt_inverse
-    ratio_tilt_by_linkage_cos_tilt_term = N_tilt * lead_tilt_inverse_pi_length_tilt_inverse
-    ratio_tilt_by_linkage_cos_tilt_term_sin_tilt = ratio_tilt_by_linkage_cos_tilt_term * sin_tilt
+    ratio_tilt_by_linkage_cos_tilt_factor = N_tilt * lead_tilt_inverse_pi_length_tilt_inverse
+    ratio_tilt_by_linkage_cos_tilt_term = ratio_tilt_by_linkage_cos_tilt_factor * sin_tilt
     ratio_tilt_by_linkage_cos_tilt = (-cos_tilt_half_length_tilt_inverse * ratio_tilt_by_length_tilt
-        + ratio_tilt_by_linkage_cos_tilt_term_sin_tilt)
+        + ratio_tilt_by_linkage_cos_tilt_term)
     half_length_tilt_inverse_sin_tilt = half_length_tilt_inverse * sin_tilt
     length_tilt_by_theta_tilt_by_linkage_cos_tilt = (cos_tilt * quarter_length_tilt_inverse_cubed
-        * ratio_tilt_by_N_tilt_term + half_length_tilt_inverse_sin_tilt)
-    cos_tilt_ratio_tilt_by_linkage_cos_tilt_term = cos_tilt * ratio_tilt_by_linkage_cos_tilt_term
-    ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term = (N_tilt
+        * ratio_tilt_by_N_tilt_factor + half_length_tilt_inverse_sin_tilt)
+    ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term = (cos_tilt
+        * ratio_tilt_by_linkage_cos_tilt_factor)
+    ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_factor = (N_tilt
         * lead_tilt_inverse_pi_length_tilt_inverse_sq * length_tilt_by_theta_tilt)
     ratio_tilt_by_theta_tilt_by_linkage_cos_tilt = (-cos_tilt_half_length_tilt_inverse
-        * ratio_tilt_by_theta_tilt_by_length_tilt + cos_tilt_ratio_tilt_by_linkage_cos_tilt_term
-        + length_tilt_by_theta_tilt_by_linkage_cos_tilt * ratio_tilt_by_length_tilt
-        - ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term * sin_tilt)
+        * ratio_tilt_by_theta_tilt_by_length_tilt + length_tilt_by_theta_tilt_by_linkage_cos_tilt
+        * ratio_tilt_by_length_tilt - ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_factor * sin_tilt
+        + ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term)
     driving_torque_tilt_by_linkage_cos_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
         * ratio_tilt_by_theta_tilt_by_linkage_cos_tilt + force_tilt_by_ratio_tilt
         * ratio_tilt_by_linkage_cos_tilt)
@@ -698,14 +702,14 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + driving_torque_tilt_by_linkage_cos_tilt + force_tilt_by_lost_lowering_tilt
         * lost_lowering_tilt_by_linkage_cos_tilt + force_tilt_by_lost_raising_tilt
         * lost_raising_tilt_by_linkage_cos_tilt))
-    ratio_tilt_by_linkage_sin_tilt = (-cos_tilt_ratio_tilt_by_linkage_cos_tilt_term
-        - half_length_tilt_inverse_sin_tilt * ratio_tilt_by_length_tilt)
+    ratio_tilt_by_linkage_sin_tilt = (-half_length_tilt_inverse_sin_tilt * ratio_tilt_by_length_tilt
+        - ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term)
     length_tilt_by_theta_tilt_by_linkage_sin_tilt = (-cos_tilt_half_length_tilt_inverse
-        + 0.25 * length_tilt_inverse_cubed * ratio_tilt_by_N_tilt_term * sin_tilt)
+        + 0.25 * length_tilt_inverse_cubed * ratio_tilt_by_N_tilt_factor * sin_tilt)
     ratio_tilt_by_theta_tilt_by_linkage_sin_tilt = (cos_tilt
-        * ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_term - half_length_tilt_inverse_sin_tilt
+        * ratio_tilt_by_theta_tilt_by_linkage_cos_tilt_factor - half_length_tilt_inverse_sin_tilt
         * ratio_tilt_by_theta_tilt_by_length_tilt + length_tilt_by_theta_tilt_by_linkage_sin_tilt
-        * ratio_tilt_by_length_tilt + ratio_tilt_by_linkage_cos_tilt_term_sin_tilt)
+        * ratio_tilt_by_length_tilt + ratio_tilt_by_linkage_cos_tilt_term)
     driving_torque_tilt_by_linkage_sin_tilt = (-J_motor_tilt_ratio_tilt_omega_tilt_sq
         * ratio_tilt_by_theta_tilt_by_linkage_sin_tilt + force_tilt_by_ratio_tilt
         * ratio_tilt_by_linkage_sin_tilt)
@@ -729,10 +733,10 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * linkage_cos_tilt_linkage_sin_tilt_inverse)
     length_tilt_by_l_ground_tilt = l_ground_tilt * length_tilt_inverse
     ratio_tilt_by_l_ground_tilt = length_tilt_by_l_ground_tilt * ratio_tilt_by_length_tilt
-    length_tilt_by_theta_tilt_by_l_ground_tilt_term = (0.5 * length_tilt_inverse_cubed
-        * ratio_tilt_by_N_tilt_term)
+    length_tilt_by_theta_tilt_by_l_ground_tilt_factor = (0.5 * length_tilt_inverse_cubed
+        * ratio_tilt_by_N_tilt_factor)
     length_tilt_by_theta_tilt_by_l_ground_tilt = (-l_ground_tilt
-        * length_tilt_by_theta_tilt_by_l_ground_tilt_term)
+        * length_tilt_by_theta_tilt_by_l_ground_tilt_factor)
     ratio_tilt_by_theta_tilt_by_l_ground_tilt = (length_tilt_by_l_ground_tilt
         * ratio_tilt_by_theta_tilt_by_length_tilt + length_tilt_by_theta_tilt_by_l_ground_tilt
         * ratio_tilt_by_length_tilt)
@@ -752,14 +756,14 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + driving_torque_tilt_by_l_ground_tilt + force_tilt_by_lost_lowering_tilt
         * lost_lowering_tilt_by_l_ground_tilt + force_tilt_by_lost_raising_tilt
         * lost_raising_tilt_by_l_ground_tilt))  # accel_tilt_by_l_ground_tilt
-    rate_of_i_tilt_by_l_ground_tilt_term = (K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt
+    rate_of_i_tilt_by_l_ground_tilt_factor = (K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt
         * ratio_tilt_by_linkage_cos_tilt)
-    rate_of_i_tilt_by_l_ground_tilt_term_2 = (K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt
+    rate_of_i_tilt_by_l_ground_tilt_factor_2 = (K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt
         * ratio_tilt_by_linkage_sin_tilt)
     # rate_of_i_tilt_by_l_ground_tilt
     fp[2, 14] = (-K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_l_ground_tilt
-        - linkage_cos_tilt_by_l_ground_tilt * rate_of_i_tilt_by_l_ground_tilt_term
-        - linkage_sin_tilt_by_l_ground_tilt * rate_of_i_tilt_by_l_ground_tilt_term_2)
+        - linkage_cos_tilt_by_l_ground_tilt * rate_of_i_tilt_by_l_ground_tilt_factor
+        - linkage_sin_tilt_by_l_ground_tilt * rate_of_i_tilt_by_l_ground_tilt_factor_2)
     linkage_cos_tilt_by_l_min_tilt = -2.0 * l_min_tilt_plus_s_start_tilt
     linkage_sin_tilt_by_l_min_tilt = (-linkage_cos_tilt_by_l_min_tilt
         * linkage_cos_tilt_linkage_sin_tilt_inverse)
@@ -767,15 +771,15 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + accel_tilt_by_linkage_sin_tilt * linkage_sin_tilt_by_l_min_tilt)
     fp[1, 15] = accel_tilt_by_l_min_tilt
     rate_of_i_tilt_by_l_min_tilt = (-linkage_cos_tilt_by_l_min_tilt
-        * rate_of_i_tilt_by_l_ground_tilt_term - linkage_sin_tilt_by_l_min_tilt
-        * rate_of_i_tilt_by_l_ground_tilt_term_2)
+        * rate_of_i_tilt_by_l_ground_tilt_factor - linkage_sin_tilt_by_l_min_tilt
+        * rate_of_i_tilt_by_l_ground_tilt_factor_2)
     fp[2, 15] = rate_of_i_tilt_by_l_min_tilt
     linkage_cos_tilt_by_r_arm_tilt = 2.0 * r_arm_tilt
     linkage_sin_tilt_by_r_arm_tilt = (4.0 * l_ground_tilt_sq * linkage_sin_tilt_inverse * r_arm_tilt
         - linkage_cos_tilt_by_r_arm_tilt * linkage_cos_tilt_linkage_sin_tilt_inverse)
     length_tilt_by_r_arm_tilt = length_tilt_inverse * r_arm_tilt
     ratio_tilt_by_r_arm_tilt = length_tilt_by_r_arm_tilt * ratio_tilt_by_length_tilt
-    length_tilt_by_theta_tilt_by_r_arm_tilt = (-length_tilt_by_theta_tilt_by_l_ground_tilt_term
+    length_tilt_by_theta_tilt_by_r_arm_tilt = (-length_tilt_by_theta_tilt_by_l_ground_tilt_factor
         * r_arm_tilt)
     ratio_tilt_by_theta_tilt_by_r_arm_tilt = (length_tilt_by_r_arm_tilt
         * ratio_tilt_by_theta_tilt_by_length_tilt + length_tilt_by_theta_tilt_by_r_arm_tilt
@@ -796,8 +800,8 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         * lost_raising_tilt_by_r_arm_tilt))  # accel_tilt_by_r_arm_tilt
     # rate_of_i_tilt_by_r_arm_tilt
     fp[2, 16] = (-K_t_tilt_omega_tilt_rate_of_i_tilt_by_u_tilt * ratio_tilt_by_r_arm_tilt
-        - linkage_cos_tilt_by_r_arm_tilt * rate_of_i_tilt_by_l_ground_tilt_term
-        - linkage_sin_tilt_by_r_arm_tilt * rate_of_i_tilt_by_l_ground_tilt_term_2)
+        - linkage_cos_tilt_by_r_arm_tilt * rate_of_i_tilt_by_l_ground_tilt_factor
+        - linkage_sin_tilt_by_r_arm_tilt * rate_of_i_tilt_by_l_ground_tilt_factor_2)
     fp[1, 17] = accel_tilt_by_l_min_tilt  # accel_tilt_by_s_start_tilt
     fp[2, 17] = rate_of_i_tilt_by_l_min_tilt  # rate_of_i_tilt_by_s_start_tilt
     fp[1, 19] = (accel_tilt_by_gravity_cos_tilt * gravity_cos_tilt_by_gravity
@@ -806,47 +810,47 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         return
     # holding_tilt_by_theta_tilt
     gx[0, 0] = (-J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_theta_tilt
-        - carried_tilt_by_theta_tilt_term + force_tilt_by_ratio_tilt * ratio_tilt_by_theta_tilt)
-    sign_load_torque_tilt = 0.0 if load_torque_tilt == 0 else math.copysign(1, load_torque_tilt)
+        - carried_tilt_by_theta_tilt_factor + force_tilt_by_ratio_tilt * ratio_tilt_by_theta_tilt)
+    sign_load_torque_tilt = 0.0 if load_torque_tilt == 0.0 else math.copysign(1.0, load_torque_tilt)
     raised_tilt_minus_lowered_tilt = -lowered_tilt + raised_tilt
     forward_tilt_by_theta_tilt_term = 0.5 * lowered_tilt + 0.5 * raised_tilt - 1.0
-    forward_tilt_by_theta_tilt_term_2 = (-forward_tilt_by_theta_tilt_term
+    forward_tilt_by_theta_tilt_factor = (-forward_tilt_by_theta_tilt_term
         + 0.5 * raised_tilt_minus_lowered_tilt * sign_load_torque_tilt)
     # forward_tilt_by_theta_tilt
-    gx[1, 0] = -carried_tilt_by_theta_tilt_term * forward_tilt_by_theta_tilt_term_2
-    backward_tilt_by_theta_tilt_term = (forward_tilt_by_theta_tilt_term
+    gx[1, 0] = -carried_tilt_by_theta_tilt_factor * forward_tilt_by_theta_tilt_factor
+    backward_tilt_by_theta_tilt_factor = (forward_tilt_by_theta_tilt_term
         + 0.5 * raised_tilt_minus_lowered_tilt * sign_load_torque_tilt)
     # backward_tilt_by_theta_tilt
-    gx[2, 0] = -backward_tilt_by_theta_tilt_term * carried_tilt_by_theta_tilt_term
-    gx[0, 1] = -b_tilt_plus_carried_tilt_by_omega_tilt_term  # holding_tilt_by_omega_tilt
-    gx[1, 1] = -b_tilt * forward_tilt_by_theta_tilt_term_2  # forward_tilt_by_omega_tilt
-    gx[2, 1] = -b_tilt * backward_tilt_by_theta_tilt_term  # backward_tilt_by_omega_tilt
+    gx[2, 0] = -backward_tilt_by_theta_tilt_factor * carried_tilt_by_theta_tilt_factor
+    gx[0, 1] = -b_tilt_plus_carried_tilt_by_omega_tilt_factor  # holding_tilt_by_omega_tilt
+    gx[1, 1] = -b_tilt * forward_tilt_by_theta_tilt_factor  # forward_tilt_by_omega_tilt
+    gx[2, 1] = -b_tilt * backward_tilt_by_theta_tilt_factor  # backward_tilt_by_omega_tilt
     gx[0, 2] = driving_torque_tilt_by_i_tilt  # holding_tilt_by_i_tilt
     # holding_tilt_by_m_payload
     gp[0, 0] = cos_tilt * gravity_cos_tilt_by_m_payload + gravity_sin_tilt_by_m_payload * sin_tilt
     cos_tilt_gravity_cos_tilt_by_m_payload = cos_tilt * gravity_cos_tilt_by_m_payload
     gravity_sin_tilt_by_m_payload_sin_tilt = gravity_sin_tilt_by_m_payload * sin_tilt
     # forward_tilt_by_m_payload
-    gp[1, 0] = (cos_tilt_gravity_cos_tilt_by_m_payload * forward_tilt_by_theta_tilt_term_2
-        + forward_tilt_by_theta_tilt_term_2 * gravity_sin_tilt_by_m_payload_sin_tilt)
+    gp[1, 0] = (cos_tilt_gravity_cos_tilt_by_m_payload * forward_tilt_by_theta_tilt_factor
+        + forward_tilt_by_theta_tilt_factor * gravity_sin_tilt_by_m_payload_sin_tilt)
     # backward_tilt_by_m_payload
-    gp[2, 0] = (backward_tilt_by_theta_tilt_term * cos_tilt_gravity_cos_tilt_by_m_payload
-        + backward_tilt_by_theta_tilt_term * gravity_sin_tilt_by_m_payload_sin_tilt)
+    gp[2, 0] = (backward_tilt_by_theta_tilt_factor * cos_tilt_gravity_cos_tilt_by_m_payload
+        + backward_tilt_by_theta_tilt_factor * gravity_sin_tilt_by_m_payload_sin_tilt)
     gp[0, 2] = cos_tilt * gravity_cos_tilt_by_c_x_payload  # holding_tilt_by_c_x_payload
     cos_tilt_gravity_cos_tilt_by_c_x_payload = cos_tilt * gravity_cos_tilt_by_c_x_payload
     # forward_tilt_by_c_x_payload
-    gp[1, 2] = cos_tilt_gravity_cos_tilt_by_c_x_payload * forward_tilt_by_theta_tilt_term_2
+    gp[1, 2] = cos_tilt_gravity_cos_tilt_by_c_x_payload * forward_tilt_by_theta_tilt_factor
     # backward_tilt_by_c_x_payload
-    gp[2, 2] = backward_tilt_by_theta_tilt_term * cos_tilt_gravity_cos_tilt_by_c_x_payload
+    gp[2, 2] = backward_tilt_by_theta_tilt_factor * cos_tilt_gravity_cos_tilt_by_c_x_payload
     gp[0, 3] = gravity_cos_tilt_by_c_x_payload * sin_tilt  # holding_tilt_by_c_z_payload
     gravity_cos_tilt_by_c_x_payload_sin_tilt = gravity_cos_tilt_by_c_x_payload * sin_tilt
     # forward_tilt_by_c_z_payload
-    gp[1, 3] = forward_tilt_by_theta_tilt_term_2 * gravity_cos_tilt_by_c_x_payload_sin_tilt
+    gp[1, 3] = forward_tilt_by_theta_tilt_factor * gravity_cos_tilt_by_c_x_payload_sin_tilt
     # backward_tilt_by_c_z_payload
-    gp[2, 3] = backward_tilt_by_theta_tilt_term * gravity_cos_tilt_by_c_x_payload_sin_tilt
+    gp[2, 3] = backward_tilt_by_theta_tilt_factor * gravity_cos_tilt_by_c_x_payload_sin_tilt
     gp[0, 4] = -omega_tilt  # holding_tilt_by_b_tilt
-    gp[1, 4] = -forward_tilt_by_theta_tilt_term_2 * omega_tilt  # forward_tilt_by_b_tilt
-    gp[2, 4] = -backward_tilt_by_theta_tilt_term * omega_tilt  # backward_tilt_by_b_tilt
+    gp[1, 4] = -forward_tilt_by_theta_tilt_factor * omega_tilt  # forward_tilt_by_b_tilt
+    gp[2, 4] = -backward_tilt_by_theta_tilt_factor * omega_tilt  # backward_tilt_by_b_tilt
     gp[0, 7] = driving_torque_tilt_by_K_t_tilt  # holding_tilt_by_K_t_tilt
     gp[0, 8] = -minus_holding_tilt_by_J_motor_tilt  # holding_tilt_by_J_motor_tilt
     gp[0, 9] = driving_torque_tilt_by_b_motor_tilt  # holding_tilt_by_b_motor_tilt
@@ -856,25 +860,26 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
         + force_tilt_by_ratio_tilt * ratio_tilt_by_lead_tilt)  # holding_tilt_by_lead_tilt
     half_load_torque_tilt = 0.5 * load_torque_tilt
     half_abs_load_torque_tilt = 0.5 * abs(load_torque_tilt)
-    forward_tilt_by_lead_tilt_term = -half_abs_load_torque_tilt - half_load_torque_tilt
-    forward_tilt_by_lead_tilt_term_2 = half_abs_load_torque_tilt - half_load_torque_tilt
-    gp[1, 11] = (forward_tilt_by_lead_tilt_term * lowered_tilt_by_lead_tilt
-        + forward_tilt_by_lead_tilt_term_2 * raised_tilt_by_lead_tilt)  # forward_tilt_by_lead_tilt
+    forward_tilt_by_lead_tilt_factor = -half_abs_load_torque_tilt - half_load_torque_tilt
+    forward_tilt_by_lead_tilt_factor_2 = half_abs_load_torque_tilt - half_load_torque_tilt
+    # forward_tilt_by_lead_tilt
+    gp[1, 11] = (forward_tilt_by_lead_tilt_factor * lowered_tilt_by_lead_tilt
+        + forward_tilt_by_lead_tilt_factor_2 * raised_tilt_by_lead_tilt)
     # backward_tilt_by_lead_tilt
-    gp[2, 11] = (-forward_tilt_by_lead_tilt_term * raised_tilt_by_lead_tilt
-        - forward_tilt_by_lead_tilt_term_2 * lowered_tilt_by_lead_tilt)
+    gp[2, 11] = (-forward_tilt_by_lead_tilt_factor * raised_tilt_by_lead_tilt
+        - forward_tilt_by_lead_tilt_factor_2 * lowered_tilt_by_lead_tilt)
     # forward_tilt_by_d_screw_tilt
-    gp[1, 12] = (forward_tilt_by_lead_tilt_term * lowered_tilt_by_d_screw_tilt
-        + forward_tilt_by_lead_tilt_term_2 * raised_tilt_by_d_screw_tilt)
+    gp[1, 12] = (forward_tilt_by_lead_tilt_factor * lowered_tilt_by_d_screw_tilt
+        + forward_tilt_by_lead_tilt_factor_2 * raised_tilt_by_d_screw_tilt)
     # backward_tilt_by_d_screw_tilt
-    gp[2, 12] = (-forward_tilt_by_lead_tilt_term * raised_tilt_by_d_screw_tilt
-        - forward_tilt_by_lead_tilt_term_2 * lowered_tilt_by_d_screw_tilt)
+    gp[2, 12] = (-forward_tilt_by_lead_tilt_factor * raised_tilt_by_d_screw_tilt
+        - forward_tilt_by_lead_tilt_factor_2 * lowered_tilt_by_d_screw_tilt)
     # forward_tilt_by_f_screw_tilt
-    gp[1, 13] = (forward_tilt_by_lead_tilt_term * lowered_tilt_by_f_screw_tilt
-        + forward_tilt_by_lead_tilt_term_2 * raised_tilt_by_f_screw_tilt)
+    gp[1, 13] = (forward_tilt_by_lead_tilt_factor * lowered_tilt_by_f_screw_tilt
+        + forward_tilt_by_lead_tilt_factor_2 * raised_tilt_by_f_screw_tilt)
     # backward_tilt_by_f_screw_tilt
-    gp[2, 13] = (-forward_tilt_by_lead_tilt_term * raised_tilt_by_f_screw_tilt
-        - forward_tilt_by_lead_tilt_term_2 * lowered_tilt_by_f_screw_tilt)
+    gp[2, 13] = (-forward_tilt_by_lead_tilt_factor * raised_tilt_by_f_screw_tilt
+        - forward_tilt_by_lead_tilt_factor_2 * lowered_tilt_by_f_screw_tilt)
     gp[0, 14] = (-J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_l_ground_tilt
         + driving_torque_tilt_by_linkage_cos_tilt * linkage_cos_tilt_by_l_ground_tilt
         + driving_torque_tilt_by_linkage_sin_tilt * linkage_sin_tilt_by_l_ground_tilt
@@ -893,20 +898,18 @@ def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
     cos_tilt_gravity_cos_tilt_by_gravity = cos_tilt * gravity_cos_tilt_by_gravity
     gravity_sin_tilt_by_gravity_sin_tilt = gravity_sin_tilt_by_gravity * sin_tilt
     # forward_tilt_by_gravity
-    gp[1, 19] = (cos_tilt_gravity_cos_tilt_by_gravity * forward_tilt_by_theta_tilt_term_2
-        + forward_tilt_by_theta_tilt_term_2 * gravity_sin_tilt_by_gravity_sin_tilt)
+    gp[1, 19] = (cos_tilt_gravity_cos_tilt_by_gravity * forward_tilt_by_theta_tilt_factor
+        + forward_tilt_by_theta_tilt_factor * gravity_sin_tilt_by_gravity_sin_tilt)
     # backward_tilt_by_gravity
-    gp[2, 19] = (backward_tilt_by_theta_tilt_term * cos_tilt_gravity_cos_tilt_by_gravity
-        + backward_tilt_by_theta_tilt_term * gravity_sin_tilt_by_gravity_sin_tilt)
+    gp[2, 19] = (backward_tilt_by_theta_tilt_factor * cos_tilt_gravity_cos_tilt_by_gravity
+        + backward_tilt_by_theta_tilt_factor * gravity_sin_tilt_by_gravity_sin_tilt)
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def outputs(t, x, u, p, y):
     """Write the measured signals into y.
 
-    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; y [2] in
-      OUTPUT_UNITS.
-    y: reading_theta_tilt, reading_i_tilt.
+    t, x [3], u [1], p [20]; y [2] in OUTPUT_UNITS.
     """
     theta_tilt, i_tilt = x[0], x[2]
     y[0] = theta_tilt  # reading_theta_tilt
@@ -917,8 +920,7 @@ def outputs(t, x, u, p, y):
 def output_jacobian(t, x, u, p, yx, yp):
     """Write the non-zero derivatives of outputs by state and parameter.
 
-    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; yx
-      [2, 3]; yp [2, 20].
+    t, x [3], u [1], p [20]; yx [2, 3]; yp [2, 20].
     """
     yx[0, 0] = 1.0  # reading_theta_tilt_by_theta_tilt
     yx[1, 2] = 1.0  # reading_i_tilt_by_i_tilt
@@ -928,7 +930,7 @@ def output_jacobian(t, x, u, p, yx, yp):
 def domain(p, bounds):
     """Write lower and upper bound of the state of every row of DOMAIN into bounds.
 
-    p [20] in the units of PARAMETERS; bounds [2, 2] in STATE_UNITS: lower, upper.
+    p [20]; bounds [2, 2] in STATE_UNITS: lower, upper.
     """
     l_ground_tilt, l_min_tilt, r_arm_tilt, s_start_tilt = p[14], p[15], p[16], p[17]
     s_max_tilt = p[18]
@@ -954,8 +956,7 @@ def domain(p, bounds):
 def margins(p, margin):
     """Write by how much the parameters meet every row of REQUIREMENTS into margin.
 
-    p [20] in the units of PARAMETERS; margin [3] in units of what is compared.
-    margin: requirement_0, requirement_1, requirement_2.
+    p [20]; margin [3] in units of what is compared.
     """
     lead_tilt, d_screw_tilt, f_screw_tilt, l_ground_tilt = p[11], p[12], p[13], p[14]
     l_min_tilt, r_arm_tilt, s_start_tilt, s_max_tilt = p[15], p[16], p[17], p[18]
@@ -966,37 +967,38 @@ def margins(p, margin):
     margin[2] = math.pi * d_screw_tilt - f_screw_tilt * lead_tilt  # requirement_2
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
+def breaking_away(slide, holding, forward, backward):
+    """Return the direction of a friction: if it sticks, that of a torque beyond breakaway."""
+    if slide == 0.0 and holding > forward:
+        return 1.0
+    if slide == 0.0 and -holding > backward:
+        return -1.0
+    return slide
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def implied_modes(t, x, u, p):
+    """Return the modes that a state implies, in the order of MODE_NAMES: contact from the
+    separation, sticking from the holding torque.
+    """
+    omega_tilt = x[1]
+    slide_tilt = np.sign(omega_tilt)
+    g = guard_values(t, x, u, p, slide_tilt)
+    slide_tilt = breaking_away(slide_tilt, g[0], g[1], g[2])
+    return (slide_tilt,)
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def initial_modes(t, x, u, p, m):
-    """Find the modes of a state: contact from the separation, sticking from the holding torque."""
-    frictions = len(FRICTION_RATES)
-    contacts = (len(m) - frictions) // 2
-    g = np.empty(3 * frictions + 4 * contacts)
-    m[:] = 0.0
-    guards(t, x, u, p, m, g)
-    for k in range(contacts):
-        at = 3 * frictions + 4 * k
-        side = 1.0 if g[at] > 0.0 else -1.0
-        if side * g[at] > g[at + 1]:
-            torque = g[at + 2] if side > 0.0 else g[at + 3]
-            m[frictions + 2 * k] = side
-            m[frictions + 2 * k + 1] = 1.0 if side * torque > 0.0 else 0.0
-    for k in range(frictions):
-        m[k] = np.sign(x[FRICTION_RATES[k]])
-    guards(t, x, u, p, m, g)
-    for k in range(frictions):
-        if m[k] == 0.0 and g[3 * k] > g[3 * k + 1]:
-            m[k] = 1.0
-        elif m[k] == 0.0 and -g[3 * k] > g[3 * k + 2]:
-            m[k] = -1.0
+    """Write the modes that a state implies into m; see MODE_NAMES."""
+    (m[0],) = implied_modes(t, x, u, p)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def state_derivative(t, x, u, p, dx):
     """Write the time derivative of the state into dx, in the modes that the state implies."""
-    m = np.empty(len(MODE_NAMES))
-    initial_modes(t, x, u, p, m)
-    mode_derivative(t, x, u, p, m, dx)
+    mode_derivative(t, x, u, p, implied_modes(t, x, u, p), dx)
 
 
 # What the field calls some of these functions.
@@ -1031,4 +1033,4 @@ EFFECTS = (
      "linear actuator with lead screw and linkage",
      "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6", "", False),
 )
-# END sha256 6672dddbe102e9215418ca76af04e299393161b31de01c2049c7fc2f1a249932
+# END sha256 49bffeeececffe882ce3104a2918fe4f891d9d65be8267908a0742d8a9a61fe0

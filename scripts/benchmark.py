@@ -5,7 +5,8 @@ the best of several. How to read the table:
 
 - "right-hand side": one evaluation in a compiled loop, each state from the last (chained) or from
   a list (throughput), beside gcc's code for the same formulas, which may keep what depends on
-  parameters alone out of its loop. Below 1.05 it is as fast as C.
+  parameters alone out of its loop. Below 1.05 it is as fast as C. "in single precision": the module
+  of the target `numba-float` beside that of `numba`, each state from the last.
 - "trajectory": 10 s of the payload model at a final error below 1e-9, beside scipy's DOP853.
 - "pan_drive": 10 s through stick-slip and gap with 10001 outputs; the error is that of the load
   angle over all outputs against the explicit method at a tolerance of 1e-12. "final" is the time of
@@ -40,7 +41,7 @@ from batch_peers import batches
 from log_reading import log_reading
 from rich.console import Console
 from rich.table import Table
-from right_hand_side import right_hand_side
+from right_hand_side import right_hand_side, single_precision
 from scipy.integrate import solve_ivp
 from timing import Row, best
 
@@ -304,6 +305,7 @@ def main() -> None:
     arguments = parser.parse_args()
     rows = [
         *right_hand_side(),
+        *single_precision(),
         *one_trajectory(),
         *short_run(),
         *first_runs(),

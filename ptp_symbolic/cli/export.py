@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from ptp_symbolic.cli.declared import note_defaults
+from ptp_symbolic.cli.progress import progress_line
 
 
 class WithTargets(click.Command):
@@ -30,7 +31,8 @@ def export(target: str, source: str, out: Path) -> None:
 
     target_named(target)
     platform = declared_platform(source)
-    paths, remarks = written(platform, target, out)
+    with progress_line() as say:
+        paths, remarks = written(platform, target, out, say)
     note_defaults(platform)
     for remark in remarks:
         click.echo(remark)

@@ -1,7 +1,7 @@
 """A platform exported: its equations in the language of another tool, as files."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -30,22 +30,29 @@ class Exported:
     remarks: tuple[str, ...]
 
 
-def exported(platform: Platform, target: str) -> Exported:
-    """`platform` in the language of a target.
+def exported(
+    platform: Platform, target: str, say: Callable[[str], None] = lambda _: None
+) -> Exported:
+    """`platform` in the language of a target; the phases that begin are said.
 
     Raises InputError for an unknown target, for a machine that cannot exist, and for one that the
     target cannot express, with the effects that are in the way.
     """
     own = target_named(target)
-    whole = program(possible_equations(platform))
+    say("deriving the equations")
+    equations = possible_equations(platform)
+    say("sharing their terms")
+    whole = program(equations)
     why = own.refuse(whole)
     if why is not None:
         raise InputError(f"Target '{target}' cannot express platform '{platform.name}': {why}")
     name = identifier(platform.name)
-    files: Mapping[str, str | bytes] = own.files(whole, name)
+    say("writing the text")
+    texts = own.files(whole, name)
+    files: Mapping[str, str | bytes] = texts
     if isinstance(own, Packed):
         try:
-            files = own.pack(own.files(whole, name), name)
+            files = own.pack(texts, name, say)
         except OSError as error:
             place = error.filename or "The folder for temporary files"
             raise InputError(
@@ -55,14 +62,16 @@ def exported(platform: Platform, target: str) -> Exported:
     return Exported(files, tuple(own.remarks(whole)))
 
 
-def export(platform: Platform, target: str, folder: Path) -> tuple[list[Path], tuple[str, ...]]:
+def export(
+    platform: Platform, target: str, folder: Path, say: Callable[[str], None] = lambda _: None
+) -> tuple[list[Path], tuple[str, ...]]:
     """Write `platform` for a target into `folder`; all files or none. Returns their paths, and what
-    to know of them.
+    to know of them; the phases that begin are said.
 
     Raises InputError as `exported` does, and where the folder cannot be written.
     """
     check_writable(folder)
-    found = exported(platform, target)
+    found = exported(platform, target, say)
     write_files_atomically(folder, dict(found.files))
     return [folder / name for name in found.files], found.remarks
 

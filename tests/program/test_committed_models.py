@@ -88,7 +88,8 @@ def test_the_largest_module_reads_like_one_that_a_person_wrote() -> None:
     assigned = [found for line in lines if (found := re.match(r"    ([A-Za-z_]\w*) = (.*)", line))]
     assert [found[0] for found in assigned if re.fullmatch(r"-?[A-Za-z_]\w*", found[2])] == []
     names = {found[1] for found in assigned}
-    described = [name for name in names if not re.search(r"_term(_\d+)?(_|$)", name)]
+    by_place = re.compile(r"_(term|factor|denominator)(_\d+)?(_|$)")
+    described = [name for name in names if not by_place.search(name)]
     assert len(described) >= FEWEST_NAMED * len(names)
 
 
@@ -97,8 +98,8 @@ def test_no_kernel_allocates() -> None:
     for name in COMMITTED:
         text = (generated_folder() / f"{name}.py").read_text()
         heads = re.findall(r"@njit\((.*)\)\ndef (\w+)", text)
-        allocating = {function for options, function in heads if "_nrt=False" not in options}
-        assert allocating <= {"initial_modes", "state_derivative"}, name
+        assert len(heads) > 10, name
+        assert {function for options, function in heads if "_nrt=False" not in options} == set()
 
 
 def test_gravity_may_be_set_like_any_parameter() -> None:

@@ -75,6 +75,16 @@ def trajectory(
     return {name: [float(v) for v in found[name][rows]] for name in names}
 
 
+def sizes(path: str) -> list[float]:
+    """Nominal values of the continuous states, as the FMU tells them."""
+    opened = Opened(path)
+    own = opened.begun("ModelExchange")
+    found = (ctypes.c_double * len(opened.states()))()
+    name = f"fmi{2 if opened.old else 3}GetNominalsOfContinuousStates"
+    getattr(own, name)(own.component, found, len(found))
+    return list(found)
+
+
 def slopes(path: str) -> dict[str, list[list[float]]]:
     """All partial derivatives, as the FMU gives them and by central differences."""
     opened = Opened(path)
@@ -240,6 +250,7 @@ def quiet() -> Iterator[None]:
 if __name__ == "__main__":
     tasks = (
         trajectory,
+        sizes,
         slopes,
         indicators,
         saved,

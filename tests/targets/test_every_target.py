@@ -27,6 +27,7 @@ from tests.targets.machines import (
     NAMES,
     Sampled,
     machines,
+    module_of,
     prepared_by_module,
     program_of,
     written_by_module,
@@ -158,6 +159,19 @@ def check_c_against_module(name: str, compiler: str, tmp_path: Path) -> None:
             getattr(library, f"machine_{kernel.name}")(*arguments)
             for array, own in written_by_module(name, kernel, given).items():
                 assert np.array_equal(arrays[array], own, equal_nan=True), (kernel.name, array)
+        if program_of(name).has_modes:
+            check_modes_of_c_against_module(name, library, given)
+
+
+def check_modes_of_c_against_module(name: str, library: ctypes.CDLL, given: Sampled) -> None:
+    """Both find the same modes of a state that moves, and of one at rest."""
+    moves = [not state.startswith("omega_") for state in program_of(name).vectors.x]
+    for x in (given.x, given.x * moves):
+        own, found = (np.full(len(given.m), np.nan) for _ in range(2))
+        module_of(name).initial_modes(given.t, x, given.u, given.p, own)
+        read = map(pointer, (x, given.u, given.p, found))
+        library.machine_initial_modes(ctypes.c_double(given.t), *read)
+        assert np.array_equal(found, own)
 
 
 @pytest.mark.parametrize("name", ["thesis-pan-servo", "two_axes"])

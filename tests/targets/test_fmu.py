@@ -25,6 +25,7 @@ from ptp_symbolic.models.emission import possible_equations
 from ptp_symbolic.models.export import export, identifier
 from ptp_symbolic.platform import Platform, read_platform
 from ptp_symbolic.symbolic.program.program import Program, program
+from ptp_symbolic.symbolic.targets import fmi
 from ptp_symbolic.symbolic.targets.fmi import FMU_2, FMU_3, HEADERS, Fmu
 from ptp_symbolic.symbolic.targets.fmi.archive import LINUX, archive
 from ptp_symbolic.symbolic.targets.fmi.description import base_units
@@ -116,9 +117,36 @@ def test_stick_slip_and_gap_in_co_simulation_are_those_of_the_simulator(
 
     path = built("thesis-pan-drive", target, tmp_path)
     assert validate_fmu(str(path)) == []
+    current = (1.0 - 0.0724 * 500.0) / 12.9  # A, of 1 V and the voltage of the motor at 1 rad/s
+    assert in_child("sizes", path=path) == [1.0, 1.0, 1.0, 1.0, float(f"{-current:.1e}")]
     difference, events = beside("thesis-pan-drive", path, "CoSimulation", 3.0, 3.0)
     assert events > 10
     assert difference < 1e-5
+
+
+def test_sizes_follow_from_what_is_declared() -> None:
+    """Bristles slip at their level over their stiffness; an angle goes to the end of its stroke."""
+    whole = machine_program("lugre_friction")
+    values = {p.name: float(p.default) for p in whole.equations.parameters}
+    (bristle,) = (v for v in variables(whole).states if v.name.startswith("bristle_"))
+    axis = bristle.name.partition("_")[2]
+    slipping = values[f"F_c_{axis}"] / values[f"sigma0_{axis}"]
+    assert bristle.nominal == pytest.approx(slipping, rel=0.05)
+    tilt = ptp.load("thesis-tilt-drive")
+    ends = np.abs(tilt.domain(tilt.parameter_vector())).max(axis=1)
+    sizes = {v.name: v.nominal for v in variables(program_of("thesis-tilt-drive")).states}
+    assert sizes["theta_tilt"] == pytest.approx(ends.min(), rel=0.05)
+    assert sizes["omega_tilt"] is None
+
+
+def test_phases_are_said_before_a_compiler_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    said: list[str] = []
+    monkeypatch.setattr(fmi, "systems", lambda version: [LINUX])
+    export(read_platform("thesis-ideal"), "fmu3", tmp_path, said.append)
+    phases = ["deriving the equations", "sharing their terms", "writing the text"]
+    assert said == [*phases, "compiling for Linux"]
 
 
 CASES = [

@@ -5,7 +5,7 @@ import keyword
 from ptp_symbolic.symbolic.derivation.equations import Equations
 
 VARIABLES = frozenset(
-    ["t", "x", "u", "p", "m", "c", "g", "y", "z", "e", "r", "dx", "forces", "np", "math"]
+    ["t", "x", "u", "p", "m", "c", "g", "y", "z", "e", "r", "dx", "forces", "np", "math", "float32"]
 )
 PREFIXES = (
     *("mass_", "force_", "accel_", "inverse_", "slide_", "side_", "active_", "rate_of_"),

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import sympy as sp
 
 from ptp_symbolic.symbolic.simplify.operations import common_subexpressions
-from ptp_symbolic.symbolic.symbols import real
+from ptp_symbolic.symbolic.symbols import ZERO, real
 
 Line = tuple[str, sp.Expr]
 MAX_NAME = 45  # letters: longer names are formulas
@@ -89,7 +89,7 @@ def share(definitions: Sequence[Line], outputs: Sequence[Line], words: Vocabular
     targets = {target for target, _ in outputs}
     ordered = _inlined(_once(_ordered(available, final), targets), targets)
     entries = {e: words.targets.get(t) for t, e in reversed(ordered) if t in targets}
-    return _renamed(ordered, {name for name, _ in available}, words.targets, entries)
+    return _renamed(ordered, {name for name, _ in available}, words, entries)
 
 
 def _functions_of(expressions: Iterable[sp.Expr]) -> list[Line]:
@@ -308,11 +308,11 @@ def _natural(symbol: sp.Symbol) -> list[object]:
 def _renamed(
     lines: Sequence[Line],
     kept: set[str],
-    words: Mapping[str, str],
+    words: Vocabulary,
     entries: Mapping[sp.Expr, str | None],
 ) -> list[Line]:
     """Lines with readable names for the terms that have none; `entries` are names of values."""
-    final_use = _first_target(lines, words)
+    uses, values = _first_uses(lines, words.targets), dict(lines)
     names: dict[sp.Symbol, sp.Symbol] = {}
     taken = {str(s) for _, e in lines for s in e.free_symbols} | kept
     result: list[Line] = []
@@ -324,7 +324,7 @@ def _renamed(
         told = name.removeprefix(PREFIX + TOLD) if name.startswith(PREFIX + TOLD) else None
         symbol, negative = real(name), entries.get(-real(name))
         own = told or entries.get(symbol) or _describe(expression)
-        own = own or (f"minus_{negative}" if negative else f"{final_use[name]}_term")
+        own = own or (f"minus_{negative}" if negative else _part_of(name, values, uses, words))
         readable = _unused(own, taken)
         taken.add(readable)
         names[real(name)] = real(readable)
@@ -332,14 +332,45 @@ def _renamed(
     return result
 
 
-def _first_target(lines: Sequence[Line], words: Mapping[str, str]) -> dict[str, str]:
-    """For every shared term, a word for what it is first used in."""
-    first: dict[str, str] = {}
+def _first_uses(
+    lines: Sequence[Line], targets: Mapping[str, str]
+) -> dict[str, tuple[str, sp.Expr]]:
+    """For every shared term what it is first used in: a word for it, and the expression."""
+    first: dict[str, tuple[str, sp.Expr]] = {}
     for name, expression in reversed(lines):
-        word = first.get(name, name) if name.startswith(PREFIX) else words.get(name, name)
+        shared = name.startswith(PREFIX) and name in first
+        word = first[name][0] if shared else targets.get(name, name)
         for symbol in expression.free_symbols:
-            first[str(symbol)] = word
+            first[str(symbol)] = (word, expression)
     return first
+
+
+def _part_of(
+    name: str,
+    values: Mapping[str, sp.Expr],
+    uses: Mapping[str, tuple[str, sp.Expr]],
+    words: Vocabulary,
+) -> str:
+    """A name for a term by its part in what it is first used in: in a force the torque of a
+    friction, which its direction multiplies, and all else; elsewhere a denominator, factor or term.
+    """
+    word, user = uses[name]
+    symbol, (force, _, place) = real(name), word.partition("_")
+
+    def is_friction(part: sp.Expr) -> bool:
+        own = values.get(str(-part), ZERO)
+        return (-part).is_Symbol and own.is_Mul and not words.signs.isdisjoint(own.args)
+
+    if force == "force" and user.is_Add and any(map(is_friction, user.args)):
+        if is_friction(-symbol):
+            return f"friction_torque_{place}"
+        if len(user.args) == 2:
+            return f"forcing_{place}"
+    parts = list(sp.preorder_traversal(user))
+    if any(e.is_Pow and e.exp.is_negative and e.base in (symbol, sp.Abs(symbol)) for e in parts):
+        return f"{word}_denominator"
+    inside = [e for e in parts if symbol in e.args and e != -symbol]
+    return f"{word}_factor" if inside and all(e.is_Mul for e in inside) else f"{word}_term"
 
 
 def _unused(name: str, taken: set[str]) -> str:

@@ -4,6 +4,7 @@ Sums, products, quotients and whole powers are written alike everywhere, in SymP
 languages with the same arithmetic compute the same bits.
 """
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -43,14 +44,25 @@ PAIRWISE = ("Min", "Max", "And", "Or")
 @dataclass(frozen=True)
 class Language:
     """How a language writes operations: templates of their arguments {0}, {1}, {2} (in a choice
-    the condition comes first; {all} are any number), the `suffix` of numbers, and `words` that no
-    name may be.
+    the condition comes first; {all} are any number); how it writes a `number`, {0} being its digits
+    in double precision; and `words` that no name may be.
     """
 
     name: str
     operations: Mapping[str, str]
-    suffix: str = ""
+    number: str = "{0}"
     words: frozenset[str] = frozenset()
+
+    @property
+    def single(self) -> bool:
+        """Whether numbers are marked as of single precision."""
+        return self.number != "{0}"
+
+    def numeral(self, value: float) -> str:
+        """Source of a number, its sign first; whole ones have as many digits as they need."""
+        digits = f"{abs(value)}.0" if isinstance(value, int) else repr(abs(value))
+        sign = "-" if math.copysign(1.0, value) < 0.0 else ""
+        return sign + self.number.format(digits)
 
     def identifier(self, name: str) -> str:
         """`name`, with an underscore more where it is a word, or a word with underscores."""
@@ -83,16 +95,16 @@ class Printer(PythonCodePrinter):
         return template.format(self._print(first) if expr.args else "", *atoms)
 
     def _print_Rational(self, expr: sp.Rational) -> str:
-        return repr(float(expr)) + self.language.suffix
+        return self.language.numeral(float(expr))
 
     def _print_Integer(self, expr: sp.Integer) -> str:
-        return f"{int(expr)}.0{self.language.suffix}"
+        return self.language.numeral(int(expr))
 
     def _print_Float(self, expr: sp.Float) -> str:
-        return repr(float(expr)) + self.language.suffix
+        return self.language.numeral(float(expr))
 
     def _print_NumberSymbol(self, expr: sp.NumberSymbol) -> str:
-        return repr(float(expr)) + self.language.suffix
+        return self.language.numeral(float(expr))
 
     def _print_Symbol(self, expr: sp.Symbol) -> str:
         return self.language.identifier(str(super()._print_Symbol(expr)))
@@ -102,7 +114,7 @@ class Printer(PythonCodePrinter):
 
     def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
         base, exponent = expr.as_base_exp()
-        operations, one = self.language.operations, f"1.0{self.language.suffix}"
+        operations, one = self.language.operations, self.language.numeral(1)
         if abs(exponent) == sp.Rational(1, 2):
             root = "sqrt" if exponent > 0 else "inverse sqrt"
             return operations[root].format(self._print(base))

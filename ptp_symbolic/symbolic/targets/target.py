@@ -1,7 +1,7 @@
 """What a target is: a language or a tool that a program is written for."""
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Protocol, runtime_checkable
 
 from ptp_symbolic.symbolic.program.program import Program
@@ -33,8 +33,12 @@ class Target(Protocol):
 class Packed(Protocol):
     """What a target has too whose files are packed into others before they are written."""
 
-    def pack(self, files: Mapping[str, str], name: str) -> Mapping[str, bytes]:
-        """Contents of the packed files by name, from the texts of a program called `name`."""
+    def pack(
+        self, files: Mapping[str, str], name: str, say: Callable[[str], None]
+    ) -> Mapping[str, bytes]:
+        """Contents of the packed files by name, from the texts of a program called `name`; what
+        takes long is said.
+        """
 
 
 def effects_of(program: Program) -> list[str]:

@@ -20,7 +20,7 @@ class C99:
     def __init__(self, name: str, language: Language) -> None:
         self.name = name
         self.language = language
-        self.summary = f"C99, {'single' if language.suffix else 'double'} precision, with step()"
+        self.summary = f"C99, {'single' if language.single else 'double'} precision, with step()"
 
     def refuse(self, program: Program) -> str | None:
         """Nothing is refused."""
@@ -108,10 +108,10 @@ def source(program: Program, name: str, language: Language, events: bool = False
     """
     events = program.has_modes and (events or program.has_rigid_contacts)
     equations = program.equations
-    values = [_number(p.default, language) for p in equations.parameters]
+    values = [language.numeral(float(p.default)) for p in equations.parameters]
     states = list(equations.state_symbols)
     start = {state.name: float(state.initial) for state in equations.extra_states}
-    initial = [_number(start.get(str(s), 0.0), language) for s in states]
+    initial = [language.numeral(start.get(str(s), 0.0)) for s in states]
     sizes = _sizes(program)
     text = [
         f'#include "{name}.h"',
@@ -119,10 +119,10 @@ def source(program: Program, name: str, language: Language, events: bool = False
         "#include <math.h>",
         "",
         f"typedef {name}_real real;",
-        f"#define REAL(number) {'number##f' if language.suffix else 'number'}",
-        f"#define ABS(number) {'fabsf' if language.suffix else 'fabs'}(number)",
+        f"#define REAL(number) {'number##f' if language.single else 'number'}",
+        f"#define ABS(number) {'fabsf' if language.single else 'fabs'}(number)",
         "#define MAX(a, b) ((a) > (b) ? (a) : (b))",
-        f"#define SMALLEST {'1e-30f' if language.suffix else '1e-60'}",
+        f"#define SMALLEST {'1e-30f' if language.single else '1e-60'}",
         *(f"#define {word} {number}" for word, number in sizes.items()),
         f"#define RIGID {int(program.has_rigid_contacts)}",
         f"#define EVENTS {int(events)}",
@@ -366,11 +366,7 @@ def _comment(text: str) -> str:
 
 
 def _real(language: Language) -> str:
-    return "float" if language.suffix else "double"
-
-
-def _number(value: float, language: Language) -> str:
-    return repr(float(value)) + language.suffix
+    return "float" if language.single else "double"
 
 
 def _id(name: str, language: Language) -> str:

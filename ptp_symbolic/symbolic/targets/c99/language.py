@@ -28,7 +28,7 @@ def _c99(name: str, suffix: str) -> Language:
         "Or": "(({0}) != 0 || ({1}) != 0)",
         "pi": f"3.141592653589793{s}",
     }
-    return Language(name, operations, suffix, WORDS)
+    return Language(name, operations, f"{{0}}{suffix}", WORDS)
 
 
 DOUBLE, FLOAT = _c99("c99", ""), _c99("c99-float", "f")

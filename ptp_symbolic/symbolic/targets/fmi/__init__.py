@@ -5,7 +5,7 @@ it. Source: Modelica Association, Functional Mock-up Interface, versions 2.0.4 a
 """
 
 import hashlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from importlib import resources
 
@@ -75,12 +75,15 @@ class Fmu:
         xml = description(whole, found, name, self.version, token, wrapper)
         return {"modelDescription.xml": xml, **inside}
 
-    def pack(self, files: Mapping[str, str], name: str) -> Mapping[str, bytes]:
-        """The archive ``name.fmu`` of `files`, with a binary for every system that can be built.
+    def pack(
+        self, files: Mapping[str, str], name: str, say: Callable[[str], None]
+    ) -> Mapping[str, bytes]:
+        """The archive ``name.fmu`` of `files`, with a binary for every system that can be built;
+        which is compiled for is said.
 
         Raises InputError where a compiler fails.
         """
-        return {f"{name}.fmu": archive(files, name, self.version, systems(self.version))}
+        return {f"{name}.fmu": archive(files, name, self.version, systems(self.version), say)}
 
 
 FMU_2, FMU_3 = Fmu("2.0"), Fmu("3.0")
@@ -106,6 +109,8 @@ def _facts(program: Program, found: Variables) -> str:
     field = program.kernel("mode_derivative")
     assert field is not None
     timed = any("t" in map(str, e.free_symbols) for _, e in field.lines)
+    sizes = {v.reference: v.nominal for v in found.states}
+    nominal = [repr(sizes[own.of] or 1.0) for own in found.derivatives if own.of is not None]
     fixed = [str(int(p.variability == FIXED)) for p in found.parameters]
     lines = [
         f"#define CONTINUOUS {len(found.derivatives)} /* states that samplers do not set */",
@@ -113,6 +118,8 @@ def _facts(program: Program, found: Variables) -> str:
         f"#define DEPENDS_ON_TIME {int(timed)}",
         *_table("double LOWEST", (_bound(p.lower) for p in equations.parameters)),
         *_table("double HIGHEST", (_bound(p.upper) for p in equations.parameters)),
+        "/* Sizes to be expected of the continuous states. */",
+        *_table("double NOMINALS", nominal),
         "/* Whether a parameter keeps its value once the instance is initialised. */",
         *_table("int FIXED", fixed),
         "/* Relations between parameters: which, and -1; the rule; whether it is strict. */",

@@ -8,7 +8,7 @@ import subprocess
 import sys
 import tempfile
 import zipfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -63,8 +63,15 @@ def missing_systems(version: str) -> list[str]:
     return [system.name for system in own if not _compiler(system)]
 
 
-def archive(files: Mapping[str, str], name: str, version: str, built: Sequence[System]) -> bytes:
-    """The archive of `files` of a version of the interface, with binaries for the systems `built`.
+def archive(
+    files: Mapping[str, str],
+    name: str,
+    version: str,
+    built: Sequence[System],
+    say: Callable[[str], None] = lambda _: None,
+) -> bytes:
+    """The archive of `files` of a version of the interface, with binaries for the systems `built`;
+    for which it compiles is said before.
 
     Raises InputError where a compiler fails.
     """
@@ -75,6 +82,7 @@ def archive(files: Mapping[str, str], name: str, version: str, built: Sequence[S
             path.parent.mkdir(exist_ok=True)
             path.write_bytes(data)
         for system in built:
+            say(f"compiling for {system.name}")
             made = _compiled(system, Path(folder, "sources"), name, f"fmi{version[0]}.c")
             content[f"binaries/{system.folder_of(version)}/{name}{system.suffix}"] = made
     buffer = io.BytesIO()

@@ -152,8 +152,10 @@ def _shared(variable: Variable) -> dict[str, str]:
 
 
 def _value(variable: Variable) -> dict[str, str]:
-    """Unit, bounds and start of a real variable."""
+    """Unit, bounds, size and start of a real variable."""
     given = {"unit": variable.unit} if variable.unit else {}
+    if variable.nominal is not None:
+        given["nominal"] = repr(variable.nominal)
     for word, bound in (("min", variable.lower), ("max", variable.upper)):
         if bound is not None and abs(bound) != float("inf"):
             given[word] = repr(bound)

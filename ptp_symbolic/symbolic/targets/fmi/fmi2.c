@@ -314,7 +314,7 @@ fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real nominals[
 {
     NEEDS_INSTANCE;
     for (size_t k = 0; k < n; k++)
-        nominals[k] = 1.0;
+        nominals[k] = NOMINALS[k];
     return fmi2OK;
 }
 

@@ -489,7 +489,7 @@ fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance instance, fmi3Float64 
 {
     NEEDS_INSTANCE;
     for (size_t k = 0; k < n; k++)
-        nominals[k] = 1.0;
+        nominals[k] = NOMINALS[k];
     return fmi3OK;
 }
 

@@ -1,10 +1,14 @@
 """The variables of an FMU: names, units and bounds, in the order of their value references."""
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+
+import sympy as sp
 
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.effect_interface.place import slide
-from ptp_symbolic.symbolic.mechanics.kinematics import place_of
+from ptp_symbolic.symbolic.mechanics.kinematics import TIME, place_of
 from ptp_symbolic.symbolic.program.kernel import Entry
 from ptp_symbolic.symbolic.program.program import Program
 
@@ -32,6 +36,7 @@ class Variable:
     start: float | None = None
     lower: float | None = None
     upper: float | None = None
+    nominal: float | None = None
     enumeration: str | None = None
     of: int | None = None
     jumps: bool = False
@@ -79,6 +84,7 @@ def variables(program: Program) -> Variables:
     needs_field, needs_outputs = _dependencies(program, at_inputs)
     same = {str(e) for _, _, e in equations.outputs}
     units, meanings = state_units(equations), _meanings(equations)
+    nominal, nominal_outputs = nominals(equations)
     initial = {state.name: float(state.initial) for state in equations.extra_states}
     states = tuple(
         Variable(
@@ -89,6 +95,7 @@ def variables(program: Program) -> Variables:
             meanings[name],
             units[name],
             initial.get(name, 0.0),
+            nominal=nominal.get(name),
             jumps=program.has_modes and name not in sampled,
             depends=(1 + i,),
         )
@@ -120,6 +127,7 @@ def variables(program: Program) -> Variables:
             CONTINUOUS,
             f"measured {name}",
             unit,
+            nominal=nominal_outputs.get(name),
             depends=needs_outputs.get(i, ()),
         )
         for i, (name, unit, expression) in enumerate(equations.outputs)
@@ -138,6 +146,55 @@ def variables(program: Program) -> Variables:
         *_event_variables(equations, at_indicators),
         tuple(dict.fromkeys(seen)),
     )
+
+
+def nominals(equations: Equations) -> tuple[dict[str, float], dict[str, float]]:
+    """Sizes to be expected of states and outputs, in their units, to two digits; of those of which
+    the platform tells it.
+
+    A state that has a domain may go to its farther bound. A state of an effect settles while joints
+    turn at 1 rad/s (m/s) in one direction at angle 0 and inputs are 1: bristles at the bend at
+    which they slip, a current at that of 1 V less the voltage of the motor. Outputs follow.
+    """
+    usual: dict[sp.Expr, sp.Expr] = {p.symbol: sp.Float(p.default) for p in equations.parameters}
+    bounds: dict[str, list[float]] = {}
+    for limit in equations.limits:
+        ends = [_number(end, usual) for end in (limit.lower, limit.upper)]
+        bounds.setdefault(str(limit.state), []).append(max(abs(end) for end in ends))
+    ones = (*equations.rates, *(i.symbol for i in equations.inputs), *equations.mode_symbols)
+    usual |= dict.fromkeys(ones, sp.Float(1)) | {TIME: sp.Float(0)}
+    at_rest = usual | dict.fromkeys(equations.coordinates, sp.Float(0))
+    at_rest |= {state.symbol: sp.Float(0) for state in equations.extra_states}
+    states = {name: min(own) for name, own in bounds.items()}
+    for state in equations.extra_states:
+        at = [
+            _number(equations.written_out(state.derivative), at_rest | {state.symbol: sp.Float(z)})
+            for z in (0, 1, 2)
+        ]
+        slope = at[1] - at[0]
+        if slope < 0.0 and math.isclose(at[2] - at[1], slope, rel_tol=1e-9):
+            states[state.name] = abs(at[0] / slope)
+    symbols = (*equations.coordinates, *(state.symbol for state in equations.extra_states))
+    moved = usual | {symbol: sp.Float(states.get(str(symbol)) or 1) for symbol in symbols}
+    outputs = {
+        name: abs(_number(equations.written_out(expression), moved))
+        for name, _, expression in equations.outputs
+    }
+    return _to_two_digits(states), _to_two_digits(outputs)
+
+
+def _number(expression: sp.Expr, values: Mapping[sp.Expr, sp.Expr]) -> float:
+    """The value of an expression; no number where something in it has none."""
+    try:
+        return float(expression.xreplace(values))
+    except TypeError:
+        return math.nan
+
+
+def _to_two_digits(sizes: Mapping[str, float]) -> dict[str, float]:
+    """The sizes that are numbers above zero: alike on every machine."""
+    sure = {name: size for name, size in sizes.items() if size > 0.0 and math.isfinite(size)}
+    return {name: float(f"{size:.1e}") for name, size in sure.items()}
 
 
 def _parameters(equations: Equations, first: int) -> tuple[Variable, ...]:

@@ -9,15 +9,17 @@ from ptp_symbolic.symbolic.documents.latex import plain_text_of
 from ptp_symbolic.symbolic.program.program import Operations
 from ptp_symbolic.symbolic.simplify.readable import readable
 from ptp_symbolic.symbolic.symbols import real
+from ptp_symbolic.symbolic.targets.printing import Language
 from ptp_symbolic.symbolic.targets.target import literal
 
 
-def docstring(equations: Equations, operations: Operations) -> str:
+def docstring(equations: Equations, operations: Operations, language: Language) -> str:
     """The docstring of the module that computes `equations`: these in the form in which it does,
     the `operations` of the state derivative (as derived, as written, at every call), its effects.
     """
     title = literal(equations.title)[1:-1]
-    lines = [f'"""{title}: equations of motion, emitted; do not edit.', ""]
+    precision = " in single precision" if language.single else ""
+    lines = [f'"""{title}: equations of motion{precision}, emitted; do not edit.', ""]
     lines.append("M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:")
     lines.append("")
     n = len(equations.coordinates)

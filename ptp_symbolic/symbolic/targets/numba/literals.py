@@ -2,16 +2,26 @@
 
 import re
 import textwrap
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from ptp_symbolic.symbolic.targets.target import literal
 
 TEXT_WIDTH = 80
 WIDTH = 100
+INNER_WIDTH = WIDTH - 4
+# Without its memory manager numba refuses to compile a function that allocates.
+COMPILED = '@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)\n'
+INLINED = COMPILED.replace("_nrt", "forceinline=True, _nrt")
 UNBROKEN = "\0"  # stands for a space at which a line must not end
 LITERAL = re.compile(r'"(?:[^"\\]|\\.)*"')
 TERMS = re.compile(r" (?![-+] |if |else )")  # the spaces that are not before such an operator
 OPERANDS = re.compile(r" (?![-+*/] |if |else )")
+
+
+def function_text(options: str, name: str, arguments: Sequence[str], rows: Sequence[str]) -> str:
+    """A compiled function with these `rows` in it."""
+    head = f"{options}def {name}({', '.join(arguments)}):\n"
+    return head + textwrap.indent("\n".join(rows), "    ")
 
 
 def long_text(value: str) -> str:
@@ -72,9 +82,18 @@ def _commented(text: str, meaning: str, width: int) -> str:
     return f"{text}  {comment}" if len(last) + len(comment) + 2 <= width else f"{comment}\n{text}"
 
 
-def tuple_text(before: str, items: Iterable[str], width: int) -> str:
-    """A tuple of names in lines of `width`, with a text before it."""
-    return _wrapped(f"{before}({listed(items)})", width, "", "    ")
+def tuple_text(before: str, items: Iterable[str], width: int, after: str = "") -> str:
+    """A tuple of names in lines of `width`, between two texts; in parentheses where it must be."""
+    found = list(items)
+    bare = f"{before}{', '.join(found)}{after}"
+    if len(found) > 1 and len(bare) <= width:
+        return bare
+    return _wrapped(f"{before}({listed(found)}){after}", width, "", "    ")
+
+
+def filled(text: str, width: int) -> str:
+    """A statement in lines of `width`, broken at any space."""
+    return _wrapped(text, width, "", "    ")
 
 
 def unpacking_text(entries: Iterable[tuple[str, str, int]], width: int) -> list[str]:

@@ -12,10 +12,13 @@ from ptp_symbolic.symbolic.targets.numba.literals import (
     number_text,
     numbers_text,
 )
+from ptp_symbolic.symbolic.targets.printing import Language
 from ptp_symbolic.symbolic.targets.target import literal
 
 
-def metadata_text(equations: Equations, digest: str, opening: str, prepared: int) -> str:
+def metadata_text(
+    equations: Equations, digest: str, opening: str, prepared: int, language: Language
+) -> str:
     """Return docstring, imports and constants of the module of `equations`, of which `prepared`
     numbers are computed once.
     """
@@ -29,7 +32,7 @@ def metadata_text(equations: Equations, digest: str, opening: str, prepared: int
         *_motion_lines(equations),
         *_parameter_lines(equations),
     ]
-    return "\n\n".join([opening, _imports(equations), "\n".join(constants)])
+    return "\n\n".join([opening, _imports(equations, language), "\n".join(constants)])
 
 
 def search_text(equations: Equations) -> str:
@@ -95,9 +98,10 @@ def _parameter_lines(equations: Equations) -> list[str]:
     ]
 
 
-def _imports(equations: Equations) -> str:
+def _imports(equations: Equations, language: Language) -> str:
     arrays = "import numpy as np\n" if equations.mode_symbols else ""
-    return f"import math\n\n{arrays}from numba import njit"
+    numbers = "\nfrom numpy import float32" if language.single else ""
+    return f"import math\n\n{arrays}from numba import njit{numbers}"
 
 
 def _parameter(parameter: Parameter) -> str:
