@@ -65,11 +65,11 @@ def _batch(starts: Any, tolerance: float) -> Any:
 
 
 def _loop(starts: Any) -> Any:
-    ends = np.array([0.0, END])
+    ends, machine = np.array([0.0, END]), ptp.load("payload")
     return np.array(
         [
             ptp.simulate(
-                "payload", ends, x0={"theta_tilt": s}, rtol=TOLERANCE, atol=TOLERANCE, ledger=False
+                machine, ends, x0={"theta_tilt": s}, rtol=TOLERANCE, atol=TOLERANCE, ledger=False
             )["theta_tilt"][-1]
             for s in starts
         ]

@@ -59,7 +59,7 @@ def draw(rows: list[Row], path: Path) -> None:
     figure, panels = plt.subplots(
         down,
         across,
-        figsize=(4.5 * across, 3.5 * down),
+        figsize=(4.0 + 2.5 * across, 3.5 * down),
         sharex=True,
         squeeze=False,
         layout="constrained",
@@ -75,7 +75,10 @@ def draw(rows: list[Row], path: Path) -> None:
     figure.supxlabel("largest error of the load angle, rad")
     figure.supylabel("time for 10 s, ms")
     figure.legend(
-        *panels[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=1 + 2 * across
+        *panels[0, 0].get_legend_handles_labels(),
+        loc="outside upper center",
+        ncols=1 + 2 * across,
+        fontsize=8,
     )
     figure.savefig(path, dpi=150)
     plt.close(figure)
