@@ -10,11 +10,13 @@ Joint angles behind sensors that err: where they show what was measured.
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
+from numba import njit, types
 
 from ptp_symbolic.numeric.identify.constants import ROUNDS
+from ptp_symbolic.numeric.identify.layout import LAYOUT
 from ptp_symbolic.numeric.runtime.element_layout import contact_count, contact_guards, contact_modes
 from ptp_symbolic.numeric.simulation.kernels.calls import call
+from ptp_symbolic.numeric.simulation.kernels.records import CUBE, INTEGERS, MATRIX, VECTOR
 
 QUOTIENT = float(np.cbrt(np.finfo(float).eps))  # rad, rad/s; step of difference quotients
 
@@ -307,3 +309,17 @@ def angles_behind_sensors(addresses, layout, shown, time, measured, inputs, p, s
             if left <= NEXT_TO_NONE:
                 break
     return angles
+
+
+_FLAGS, _MOTION = types.boolean[::1], types.NamedTuple((VECTOR, *[MATRIX] * 5), Motion)
+_ALONG = (INTEGERS, LAYOUT, _MOTION, VECTOR, VECTOR)  # addresses, layout, motion, p, resting
+AHEAD = (
+    (gear_ahead, (*_ALONG, MATRIX, _FLAGS)),
+    (gear_pushes, (*_ALONG, MATRIX, MATRIX)),
+    (further_states, (*_ALONG, _FLAGS, _FLAGS, _FLAGS, CUBE)),
+    (torques_along, (*_ALONG, MATRIX, MATRIX, MATRIX, MATRIX, INTEGERS)),
+    (
+        angles_behind_sensors,
+        (INTEGERS, LAYOUT, INTEGERS, VECTOR, MATRIX, MATRIX, VECTOR, types.int64),
+    ),
+)

@@ -5,6 +5,7 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
+from numba import types
 from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
@@ -14,6 +15,7 @@ from ptp_symbolic.numeric.simulation.kernels.calls import (
     SIGNATURES,
     compiled_addresses,
 )
+from ptp_symbolic.numeric.simulation.kernels.records import INTEGERS
 
 IntArray = NDArray[np.int64]
 
@@ -39,6 +41,9 @@ class Layout(NamedTuple):
     rows: int
     states: int
     modes: int
+
+
+LAYOUT = types.NamedTuple((*[INTEGERS] * 10, *[types.int64] * 3), Layout)
 
 
 def layout_of(model: Model) -> Layout:
