@@ -33,6 +33,7 @@ from ptp_symbolic.numeric.simulation.integration import (
     default_method,
     integrate,
 )
+from ptp_symbolic.numeric.simulation.kernels.calls import call, output_addresses
 from ptp_symbolic.numeric.simulation.kernels.records import DONE, KERNEL, MATRIX, VECTOR
 from ptp_symbolic.numeric.simulation.lane_runner import (
     ALL,
@@ -389,21 +390,13 @@ def impossible(model: Model, p: FloatArray, x: FloatArray) -> tuple[IntArray, li
     return status, reasons
 
 
-_OUTPUTS = types.FunctionType(types.void(types.float64, *[VECTOR] * 4))
-
-
-@njit(
-    types.void(
-        _OUTPUTS, VECTOR, types.float64[:, :, ::1], MATRIX, MATRIX, types.float64[:, :, ::1]
-    ),
-    cache=True,
-    **KERNEL,
-)
+@njit(types.void(types.int64, VECTOR, MATRIX, MATRIX, VECTOR, MATRIX), cache=True, **KERNEL)
 def fill_outputs(outputs, times, x, u, p, y):
-    """Write what sensors show y [b, k, ny] along x [b, k, n], with u [k, nu] and p [b, np]."""
-    for b in range(len(p)):
-        for i in range(len(times)):
-            outputs(times[i], x[b, i], u[i], p[b], y[b, i])
+    """Write what sensors show y [k, ny] along x [k, n], with u [k, nu] and p [np]; `outputs` is the
+    address of the function of the model.
+    """
+    for i in range(len(times)):
+        call(outputs, times[i], x[i], u[i], p, y[i])
 
 
 def outputs_along(
@@ -414,9 +407,9 @@ def outputs_along(
     Without noise; inputs are late where parameters say so.
     """
     y = np.full((*x.shape[:2], len(problem.model.output_names)), np.nan)
+    outputs = int(output_addresses(problem.model.module)[0])
     for b in range(len(p)):
         table = delayed(stack(problem.drives[drive[b]]), delays_of(problem.model, p[b]))
         u = values_at(table, problem.times)
-        row = slice(b, b + 1)
-        fill_outputs(problem.model.module.outputs, problem.times, x[row], u, p[row], y[row])
+        fill_outputs(outputs, problem.times, x[b], u, p[b], y[b])
     return y
