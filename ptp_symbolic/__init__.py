@@ -24,7 +24,7 @@ _HOMES = {
     "simulate": "ptp_symbolic.api.simulation",
     "simulate_batch": "ptp_symbolic.api.batch",
     "batch_function": "ptp_symbolic.api.batch",
-    "Batch": "ptp_symbolic.api.batch",
+    "Batch": "ptp_symbolic.api.batch_results",
     "sensitivity": "ptp_symbolic.api.simulation",
     "Sensitivities": "ptp_symbolic.numeric.sensitivities",
     "inverse_dynamics": "ptp_symbolic.models.inverse_dynamics",

@@ -1,8 +1,8 @@
 """Types of what `__init__.py` imports on demand."""
 
-from ptp_symbolic.api.batch import Batch as Batch
 from ptp_symbolic.api.batch import batch_function as batch_function
 from ptp_symbolic.api.batch import simulate_batch as simulate_batch
+from ptp_symbolic.api.batch_results import Batch as Batch
 from ptp_symbolic.api.effect_laws import check_effect as check_effect
 from ptp_symbolic.api.export import export as export
 from ptp_symbolic.api.linearization import Linearization as Linearization

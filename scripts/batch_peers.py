@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import importlib.util
 import tempfile
-import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from timing import Row
+from timing import Row, best
 
 import ptp_symbolic as ptp
 
@@ -24,13 +23,13 @@ STEP_OF_MUJOCO = 2e-2  # s
 Ends = Callable[[np.ndarray[Any, Any]], np.ndarray[Any, Any]]
 
 
-def batches() -> list[Row]:
-    """The payload beside loops, MuJoCo and diffrax; pan_drive beside a loop."""
-    starts = np.linspace(0.2, 0.6, 2000)
+def batches(most: int = 2000) -> list[Row]:
+    """Up to `most` trajectories of the payload beside loops, MuJoCo and diffrax; pan_drive."""
+    starts = np.linspace(0.2, 0.6, most)
     exact = _batch(starts, 1e-12)
     rows: list[Row] = []
     peers: list[tuple[str, Ends | None, int]] = [
-        ("simulate_batch", lambda x: _batch(x, TOLERANCE), 2000),
+        ("simulate_batch", lambda x: _batch(x, TOLERANCE), most),
         ("loop over simulate", _loop, 20),
         ("MuJoCo batch, RK4, 20 ms", _mujoco() if _has("mujoco.batch") else None, 20),
         ("diffrax Dopri8, vmap", _diffrax() if _has("diffrax") else None, 200),
@@ -40,7 +39,7 @@ def batches() -> list[Row]:
         if run is None:
             rows.append({"what": "batch, payload, 10 s", "peer": f"{name}: not measured"})
             continue
-        seconds, found = best_of_core(partial(run, starts[:count]), 3)
+        seconds, found = best(partial(run, starts[:count]), 3)
         error = float(np.abs(found - exact[:count]).max())
         rate = count / seconds
         rows.append({"what": "batch, payload, 10 s", "peer": name, "per s": rate, "error": error})
@@ -49,18 +48,6 @@ def batches() -> list[Row]:
         if "per s" in row:
             row["ratio"] = rows[0]["per s"] / row["per s"]
     return rows
-
-
-def best_of_core(run: Callable[[], Any], repeats: int) -> tuple[float, Any]:
-    """Shortest time of the processor in s, of all threads, and what was returned; the first,
-    untimed run compiles. Other programs on the machine count little.
-    """
-    result, shortest = run(), np.inf
-    for _ in range(repeats):
-        start = time.process_time()
-        result = run()
-        shortest = min(shortest, time.process_time() - start)
-    return float(shortest), result
 
 
 def _has(name: str) -> bool:
@@ -78,11 +65,11 @@ def _batch(starts: Any, tolerance: float) -> Any:
 
 
 def _loop(starts: Any) -> Any:
-    ends = np.array([0.0, END])
+    ends, machine = np.array([0.0, END]), ptp.load("payload")
     return np.array(
         [
             ptp.simulate(
-                "payload", ends, x0={"theta_tilt": s}, rtol=TOLERANCE, atol=TOLERANCE, ledger=False
+                machine, ends, x0={"theta_tilt": s}, rtol=TOLERANCE, atol=TOLERANCE, ledger=False
             )["theta_tilt"][-1]
             for s in starts
         ]
@@ -151,7 +138,7 @@ def _drive() -> Row:
             threads=1,
         )["theta_pan"]
 
-    seconds, found = best_of_core(partial(run, 1e-6), 3)
+    seconds, found = best(partial(run, 1e-6), 3)
     error = float(np.abs(found - run(1e-9)).max())
     return {
         "what": "batch, pan_drive, 10 s",

@@ -1,7 +1,7 @@
-"""Time the simulation against its peers in one run: `python3 scripts/benchmark.py [--json]`.
+"""Time the simulation against its peers in one run: `python3 scripts/benchmark.py [--out DIR]`.
 
 Every ratio is of two times taken here, one after the other, on the same jitted functions; each is
-the best of several. How to read the table:
+processor time, the best of several. How to read the tables:
 
 - "right-hand side": one evaluation in a compiled loop, each state from the last (chained) or from
   a list (throughput), beside gcc's code for the same formulas, which may keep what depends on
@@ -20,7 +20,13 @@ the best of several. How to read the table:
 - "batch": trajectories per second on one core, and how many times as many as each peer.
 - "sensitivities": time with six parameters over time without, and their largest relative error.
 
-`--all` adds the slower peers; `scripts/work_precision.py` draws error over time for all of them.
+- "growth": processor time over the number of trajectories, over the simulated time of one run, and
+  speed-up by the clock over cores; a curve ends where its next point would take too long.
+
+`--out DIR` writes benchmark.json, work_precision.png (error over time), growth.png and index.html,
+a page of all. `--quick` takes about a minute of one core: one input, two peers, short curves, and
+no first run with an empty cache. `--all` adds the slower peers; `scripts/work_precision.py` draws
+error over time for all inputs and all of them.
 """
 
 from __future__ import annotations
@@ -30,43 +36,41 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
+import work_precision
 from batch_peers import batches
+from benchmark_page import page
+from drive_runs import CASES, END, LAST, off, prepare, prepare_peer
+from growth import draw, growth
 from log_reading import log_reading
-from rich.console import Console
-from rich.table import Table
 from right_hand_side import right_hand_side, single_precision
 from scipy.integrate import solve_ivp
-from timing import Row, best
+from timing import Row, best, print_table
 
 import ptp_symbolic
-from ptp_symbolic.api.scipy_peer import simulate_with_scipy
+from ptp_symbolic.api.bench import computer
+from ptp_symbolic.atomic_files import write_files_atomically
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation import integration
-from ptp_symbolic.numeric.simulation.integration import Solution, integrate, tolerance_weights
-from ptp_symbolic.numeric.simulation.kernels.records import DONE
+from ptp_symbolic.numeric.simulation.integration import Solution, integrate
 from ptp_symbolic.numeric.simulation.signals import inputs
 from ptp_symbolic.platform import ParameterDeclaration, read_platform
 
-END = 10.0  # s
-GRID, LAST = np.linspace(0.0, END, 10001), np.array([0.0, END])
-ROSENBROCK = "rosenbrock"
 WANTED = 1e-8  # rad
 TOLERANCES = (1e-6, 5e-7, 2e-7, 1e-7, 5e-8, 2e-8, 1e-8, 1e-9)
 TOLERANCES_OF_PEERS = (1e-7, 3e-8, 1e-8, 3e-9, 1e-9, 3e-10, 1e-10)
-CASES = {
-    "step": inputs.step(0.0, 24.0, 0.5),
-    "ramp": inputs.ramp(0.0, 4.0, 0.0, END),
-    "crawl": inputs.multisine([2.0], [0.15]),
-    "multisine": inputs.multisine([5.0, 4.0, 3.0], [0.3, 0.9, 2.1]),
-}
+LIMIT, QUICK_LIMIT = 60.0, 1.0  # s, of one point of a curve
+QUICK_CASES, QUICK_BATCH = ("step",), 400
+QUICK_METHODS = ("rosenbrock", "runge_kutta", "LSODA")
+ALL_METHODS = (*work_precision.OURS, *work_precision.PEERS)
 SIX = ("F_c_pan", "J_pan", "gap_pan", "k_shaft_pan", "R_pan", "F_v_pan")
 
 
@@ -142,42 +146,10 @@ def short_run() -> list[Row]:
     return [{"what": "short run, payload, 1 ms", "ms": taken * 1e3}]
 
 
-def off(x: Any, exact: Any) -> float:
-    """Largest difference of two arrays."""
-    return float(np.max(np.abs(x - exact)))
-
-
-def prepare(model: Model, signal: inputs.InputSignal) -> Callable[..., Solution]:
-    """A function that runs a geared machine for 10 s from rest: run(tolerance, ...)."""
-    table, p, x = inputs.stack([signal]), model.parameter_vector(), np.zeros(len(model.state_names))
-    stops, weights = table.with_stops(np.array([0.0, END])), 0.1 * tolerance_weights(model)
-
-    def run(tolerance: float, times: Any = GRID, method: str = ROSENBROCK, **rest: Any) -> Solution:
-        accuracy = integration.Accuracy(tolerance, tolerance * weights, 0.1)
-        found = integrate(
-            model,
-            method,
-            p,
-            x,
-            table,
-            table.held,
-            stops,
-            times,
-            accuracy,
-            event_room=10_000,
-            **rest,
-        )
-        if found.status != DONE:
-            raise RuntimeError(f"stopped at {found.reached:g} s with status {found.status}")
-        return found
-
-    return run
-
-
-def drive_cases(everything: bool) -> list[Row]:
+def drive_cases(cases: Sequence[str], everything: bool) -> list[Row]:
     """The pan drive beside scipy's integrators with events."""
     model, rows = ptp_symbolic.load("pan_drive"), []
-    for name, signal in CASES.items():
+    for name, signal in ((case, CASES[case]) for case in cases):
         run = prepare(model, signal)
         exact = run(1e-12, method="runge_kutta").x[:, 0]
         tolerance = next(t for t in TOLERANCES if off(run(t).x[:, 0], exact) < WANTED)
@@ -218,25 +190,6 @@ def _peer_row(
     }
 
 
-def prepare_peer(
-    model: Model, signal: inputs.InputSignal, method: str, ours: Callable[..., Solution]
-) -> Callable[..., tuple[float, int]]:
-    """A function that runs 10 s by scipy: run(tolerance) gives its largest error and its events."""
-    table, weights = inputs.stack([signal]), 0.1 * tolerance_weights(model)
-
-    def run(tolerance: float, compared: bool = True) -> tuple[float, int]:
-        times, states, events = simulate_with_scipy(
-            model, table, END, method, tolerance, tolerance * weights
-        )
-        if not compared:
-            return np.nan, events
-        order = np.unique(times)
-        exact = np.interp(times, order, ours(1e-12, order, "runge_kutta").x[:, 0])
-        return off(states[:, 0], exact), events
-
-    return run
-
-
 def sampled_controller() -> list[Row]:
     """The pan servo with its controller at 1 kHz, along a ramp that ends: it comes to rest."""
     servo, rows = read_platform("thesis-pan-servo"), []
@@ -261,12 +214,12 @@ def sampled_controller() -> list[Row]:
     return rows
 
 
-def sensitivities() -> list[Row]:
+def sensitivities(cases: Sequence[str] = ("step", "ramp")) -> list[Row]:
     """Six parameters through the events of the step."""
     model, rows = ptp_symbolic.load("pan_drive"), []
     columns = np.array([model.parameter_names.index(n) for n in SIX])
     given = {"s": np.zeros((5, 6)), "columns": columns}
-    for name in ("step", "ramp"):
+    for name in cases:
         run = prepare(model, CASES[name])
         exact = run(1e-11, LAST, "runge_kutta", **given)
         for tolerance in (1e-7, 1e-8, 1e-9):
@@ -287,38 +240,84 @@ def sensitivities() -> list[Row]:
     return rows
 
 
-def print_table(rows: list[Row]) -> None:
-    """Print rows with every column that any of them has."""
-    columns = list(dict.fromkeys(key for row in rows for key in row))
-    shown = Table(*columns)
-    for row in rows:
-        cells = (row.get(c, "") for c in columns)
-        shown.add_row(*(f"{v:.3g}" if isinstance(v, float) else str(v) for v in cells))
-    Console(width=150).print(shown)
-
-
-def main() -> None:
-    """Run every part; print a table, or JSON."""
-    parser = argparse.ArgumentParser(description="Time the simulation against its peers.")
-    parser.add_argument("--json", action="store_true", help="print JSON instead of a table")
-    parser.add_argument("--all", action="store_true", help="also the slower peers")
-    arguments = parser.parse_args()
-    rows = [
+def whole(everything: bool) -> list[Row]:
+    """Every part."""
+    return [
         *right_hand_side(),
         *single_precision(),
         *one_trajectory(),
         *short_run(),
         *first_runs(),
-        *drive_cases(arguments.all),
+        *drive_cases(tuple(CASES), everything),
         *sampled_controller(),
         *sensitivities(),
         *batches(),
         *log_reading(),
     ]
+
+
+def quick() -> list[Row]:
+    """The parts that take seconds."""
+    return [
+        *right_hand_side(),
+        *one_trajectory(),
+        *short_run(),
+        *drive_cases(QUICK_CASES, False),
+        *sampled_controller(),
+        *sensitivities(QUICK_CASES),
+        *batches(QUICK_BATCH),
+        *log_reading(),
+    ]
+
+
+def work_precision_rows(is_quick: bool) -> list[Row]:
+    """Error over time, of fewer tolerances, inputs and peers where it `is_quick`."""
+    cases, methods = (QUICK_CASES, QUICK_METHODS) if is_quick else (tuple(CASES), ALL_METHODS)
+    tolerances = work_precision.TOLERANCES[:: 2 if is_quick else 1]
+    pairs = [(case, method) for case in cases for method in methods]
+    return [row for pair in pairs for row in work_precision.curve(*pair, tolerances)]
+
+
+def write(out: Path, content: dict[str, Any]) -> None:
+    """Write the JSON, the pictures and the page of `content`."""
+    with TemporaryDirectory() as folder:
+        pictures = {
+            "Error over time": Path(folder, "work_precision.png"),
+            "Growth": Path(folder, "growth.png"),
+        }
+        work_precision.draw(content["work precision"], pictures["Error over time"])
+        draw(content["growth"], pictures["Growth"])
+        tables = {name: content[name] for name in ("rows", "growth", "work precision")}
+        files: dict[str, str | bytes] = {
+            "benchmark.json": json.dumps(content, indent=2) + "\n",
+            "index.html": page(content["computer"], str(__doc__), tables, pictures),
+        }
+        files |= {path.name: path.read_bytes() for path in pictures.values()}
+        write_files_atomically(out, files)
+    print(out / "index.html")
+
+
+def main() -> None:
+    """Run every part; print tables, or JSON, and write files."""
+    parser = argparse.ArgumentParser(description="Time the simulation against its peers.")
+    parser.add_argument("--json", action="store_true", help="print JSON instead of tables")
+    parser.add_argument("--all", action="store_true", help="also the slower peers")
+    parser.add_argument("--quick", action="store_true", help="about a minute")
+    parser.add_argument("--out", type=Path, help="folder for JSON, pictures and a page")
+    arguments = parser.parse_args()
+    content = {
+        "computer": computer(),
+        "rows": quick() if arguments.quick else whole(arguments.all),
+        "growth": growth(QUICK_LIMIT if arguments.quick else LIMIT),
+        "work precision": work_precision_rows(arguments.quick),
+    }
     if arguments.json:
-        print(json.dumps(rows, indent=2))
+        print(json.dumps(content, indent=2))
     else:
-        print_table(rows)
+        for name in ("rows", "growth", "work precision"):
+            print_table(content[name])
+    if arguments.out is not None:
+        write(arguments.out, content)
 
 
 if __name__ == "__main__":

@@ -32,6 +32,12 @@ OF_A_MODEL = AS_INSTALLED + (
     "model = ptp.load({name!r}); ptp.simulate(model, 0.01);"
     "calls.output_addresses(model.module); calls.addresses(model.module)"
 )
+# Lanes, and outputs with their derivatives; `ideal` is smooth as `payload` is.
+OF_BATCHES = AS_INSTALLED + (
+    "import ptp_symbolic as ptp; ptp.simulate_batch('ideal', 0.01);"
+    "ptp.simulate_batch('payload', 0.01);"
+    "ptp.simulate_batch('payload', 0.01, outputs=['theta_pan'], sensitivities=['m_payload'])"
+)
 
 
 def is_wanted() -> bool:
@@ -92,6 +98,7 @@ def compiled_into(folder: Path, scratch: Path) -> bool:
     """Compile every runner and model, one process for each, into a folder."""
     sys.path.insert(0, str(CHECKOUT))
     try:
+        from ptp_symbolic.numeric.identify.ahead import COMPILE_FIT
         from ptp_symbolic.numeric.runtime.shipped import WRITE_INTO, baseline
         from ptp_symbolic.numeric.simulation.ahead import COMPILE
     except ImportError as error:
@@ -116,8 +123,9 @@ def compiled_into(folder: Path, scratch: Path) -> bool:
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         runners = list(pool.map(is_compiled, COMPILE.values()))
-        models = pool.map(is_compiled, [OF_A_MODEL.format(name=name) for name in MODELS])
-        done = all([*runners, *models])
+        others = [OF_A_MODEL.format(name=name) for name in MODELS]
+        rest = pool.map(is_compiled, [COMPILE_FIT, *others, OF_BATCHES])
+        done = all([*runners, *rest])
     for mark in (scratch / "numba").glob("*-of-*"):
         shutil.copy(mark, folder)
     return done

@@ -8,13 +8,15 @@ largest error of the load angle (ours at every millisecond, a peer's at its own 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
 import matplotlib as mpl
 import matplotlib.pyplot as plt
-from benchmark import CASES, LAST, Row, best, off, prepare, prepare_peer, print_table
+from drive_runs import CASES, LAST, off, prepare, prepare_peer
 from rich.progress import track
+from timing import Row, best, print_table
 
 import ptp_symbolic
 
@@ -23,13 +25,13 @@ OURS = {"rosenbrock": "Rosenbrock, ours", "runge_kutta": "Runge-Kutta, ours"}
 PEERS = ("LSODA", "Radau", "DOP853")
 
 
-def curve(case: str, method: str) -> list[Row]:
+def curve(case: str, method: str, tolerances: Sequence[float] = TOLERANCES) -> list[Row]:
     """Tolerance, error and time of one input by one method."""
     model, rows = ptp_symbolic.load("pan_drive"), []
     run = prepare(model, CASES[case])
     exact = run(1e-12, method="runge_kutta").x[:, 0]
     peer = None if method in OURS else prepare_peer(model, CASES[case], method, run)
-    for tolerance in TOLERANCES:
+    for tolerance in tolerances:
         if peer is None:
             error = off(run(tolerance, method=method).x[:, 0], exact)
             taken, _ = best(partial(run, tolerance, LAST, method), 10)
@@ -51,8 +53,18 @@ def curve(case: str, method: str) -> list[Row]:
 def draw(rows: list[Row], path: Path) -> None:
     """Draw a panel per input."""
     mpl.use("Agg")
-    figure, panels = plt.subplots(2, 2, figsize=(9.0, 7.0), sharex=True, layout="constrained")
-    for case, panel in zip(CASES, panels.flat, strict=True):
+    cases = list(dict.fromkeys(row["input"] for row in rows))
+    across = 2 if len(cases) > 1 else 1
+    down = -(-len(cases) // across)
+    figure, panels = plt.subplots(
+        down,
+        across,
+        figsize=(4.0 + 2.5 * across, 3.5 * down),
+        sharex=True,
+        squeeze=False,
+        layout="constrained",
+    )
+    for case, panel in zip(cases, panels.flat, strict=True):
         for method in dict.fromkeys(row["method"] for row in rows):
             chosen = [r for r in rows if (r["input"], r["method"]) == (case, method)]
             panel.loglog(
@@ -62,8 +74,14 @@ def draw(rows: list[Row], path: Path) -> None:
         panel.grid(alpha=0.3)
     figure.supxlabel("largest error of the load angle, rad")
     figure.supylabel("time for 10 s, ms")
-    figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=5)
+    figure.legend(
+        *panels[0, 0].get_legend_handles_labels(),
+        loc="outside upper center",
+        ncols=1 + 2 * across,
+        fontsize=8,
+    )
     figure.savefig(path, dpi=150)
+    plt.close(figure)
 
 
 def main() -> None:

@@ -11,27 +11,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ptp_symbolic.api.extras import extra_library
+from ptp_symbolic.api.batch_results import WORDS, Batch
 from ptp_symbolic.api.inputs import Input, Inputs, input_signals
 from ptp_symbolic.api.machine import Machine, Source, load, machine_of
-from ptp_symbolic.api.reductions import Reduction, is_reduction, reductions
+from ptp_symbolic.api.reductions import SETTLING, Reduction, is_reduction, reductions
 from ptp_symbolic.api.simulation import STATES
 from ptp_symbolic.api.values import parameter_values, state_vector
 from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.simulation import lanes
 from ptp_symbolic.numeric.simulation.integration import METHODS, checked_accuracy
-from ptp_symbolic.numeric.simulation.kernels.records import (
-    CHATTERING,
-    DIVERGED,
-    DONE,
-    EXHAUSTED,
-    OUTSIDE,
-    STIFF,
-    TOO_FAST,
-    UNDECIDED,
-)
 from ptp_symbolic.numeric.simulation.lanes import (
-    IMPOSSIBLE,
     BatchProblem,
     BatchStates,
     integrate_batch,
@@ -48,92 +37,10 @@ _Integrate = Callable[[BatchProblem, FloatArray, FloatArray, NDArray[np.int64]],
 
 FINAL, ALL = "final", "all"
 PROCESSOR, GPU = "cpu", "gpu"
-WORDS = {
-    DONE: "done",
-    IMPOSSIBLE: "impossible",
-    DIVERGED: "diverged",
-    CHATTERING: "chattering",
-    UNDECIDED: "undecided",
-    OUTSIDE: "outside",
-    EXHAUSTED: "exhausted",
-    TOO_FAST: "too fast",
-    STIFF: "stiff",
-}
 CHUNK_BYTES = 64e6  # of states that are in memory beside the results
 SHARE = 0.5  # of the memory of the machine that results may take
 LARGEST_STEP = 0.1  # s, as `simulate` has it
 LARGEST_SMOOTH_STEP = 1.0  # s: nothing is looked for inside the steps of a smooth model
-
-
-@dataclass(frozen=True, eq=False)
-class Batch:
-    """Results of n runs of `model` at the times `t` [k] in s.
-
-    `batch[name]` is a number per run [n] (a final state, a reduction) or a signal [n, k], in the
-    unit `batch.units[name]`; NaN where a run failed. `status` [n] says "done" or why not, `reasons`
-    the whole sentence by number of the run; `seeds` [n] are those of the noise, `steps` [n] those
-    that were tried, `given` [n] the parameters and initial states that differ between runs.
-    """
-
-    model: Machine
-    t: FloatArray
-    numbers: Mapping[str, FloatArray]
-    signals: Mapping[str, FloatArray]
-    units: Mapping[str, str]
-    given: Mapping[str, FloatArray]
-    status: NDArray[np.str_]
-    reasons: Mapping[int, str]
-    seeds: NDArray[np.int64]
-    steps: NDArray[np.int64]
-
-    @property
-    def ok(self) -> NDArray[np.bool_]:
-        """Whether every run [n] reached its end."""
-        return self.status == WORDS[DONE]
-
-    def __len__(self) -> int:
-        return len(self.status)
-
-    def __getitem__(self, name: str) -> FloatArray:
-        """Numbers [n] or signals [n, k]. Raises KeyError, which lists the names, for another."""
-        for values in (self.numbers, self.signals):
-            if name in values:
-                return values[name]
-        raise KeyError(str(unknown("output", name, (*self.numbers, *self.signals))))
-
-    def __repr__(self) -> str:
-        failed = int((~self.ok).sum())
-        return (
-            f"Batch of '{self.model.name}': {len(self)} runs from {self.t[0]:g} to {self.t[-1]:g} s"
-            f", {failed} failed; {', '.join((*self.numbers, *self.signals))}"
-        )
-
-    def table(self) -> dict[str, NDArray[Any]]:
-        """One row per run: what was given, the numbers, status, seed, steps and reason."""
-        reasons = np.array([self.reasons.get(b, "") for b in range(len(self))], dtype=object)
-        own = {"status": self.status, "seed": self.seeds, "steps": self.steps, "reason": reasons}
-        return {**self.given, **self.numbers, **own}
-
-    def to_pandas(self) -> Any:
-        """`table` as a pandas DataFrame. Raises InputError where pandas is not installed."""
-        return extra_library("pandas").DataFrame(self.table())
-
-    def to_xarray(self) -> Any:
-        """An xarray Dataset over `run` and `time` in s, with the units as attributes.
-
-        Raises InputError where xarray is not installed.
-        """
-        xarray = extra_library("xarray")
-        unit = {**self.model.units, **self.units}
-        columns: dict[str, Any] = {
-            name: ("run", values, {"units": unit[name]} if name in unit else {})
-            for name, values in self.table().items()
-        }
-        columns["reason"] = ("run", np.array(self.table()["reason"], dtype=np.str_), {})
-        taken = {n: f"initial {n}" if n in self.signals else n for n in columns}
-        data = {taken[name]: column for name, column in columns.items()}
-        data |= {n: (("run", "time"), v, {"units": self.units[n]}) for n, v in self.signals.items()}
-        return xarray.Dataset(data, coords={"time": ("time", self.t, {"units": "s"})})
 
 
 def simulate_batch(
@@ -152,6 +59,7 @@ def simulate_batch(
     threads: int | None = None,
     *,
     x0: Columns | None = None,
+    sensitivities: Sequence[str] = (),
     device: str = PROCESSOR,
     step: float = 1e-4,
     **values: Any,
@@ -165,17 +73,24 @@ def simulate_batch(
     "largest(theta_pan)", "rms(omega_pan)", "final(theta_tilt)", "settling_time(theta_pan; 1 mrad)",
     "rms_error(theta_pan; step:0.3@0.5)", "pointing_error(theta_pan = 0.3; theta_tilt = 0)".
     `noise` adds white noise of a standard deviation to signals, of a generator of its own per run;
-    `seeds` is the first seed (0), or all of them [n]. `device` "gpu" runs a trajectory per thread
-    of an NVIDIA GPU and keeps final states: smooth machines as here, others in steps of `step` s.
+    `seeds` is the first seed (0), or all of them [n]. `sensitivities` names parameters and initial
+    states by which all outputs are differentiated, exactly and through events; a settling time has
+    no derivative. `device` "gpu" runs a trajectory per thread of an NVIDIA GPU and keeps final
+    states: smooth machines as here, others in steps of `step` s.
 
     A run equals that of `simulate` without ledger: for smooth models within the tolerances, bit for
-    bit for all others. A run that fails leaves NaN and its reason, and the others finish. Raises
-    InputError for what is wrong for all runs, and for results that do not fit into memory.
+    bit for all others; with sensitivities it equals that of `sensitivity` bit for bit. A run that
+    fails leaves NaN and its reason, and the others finish. Raises InputError for what is wrong for
+    all runs, and for results that do not fit into memory.
 
     >>> import ptp_symbolic as ptp
     >>> batch = ptp.simulate_batch("ideal", 1.0, tau_pan=0.1, J_pan=[5e-4, -1.0, 6e-4])
     >>> batch.status.tolist()
     ['done', 'impossible', 'done']
+    >>> batch = ptp.simulate_batch("ideal", 1.0, tau_pan=0.1, J_pan=[5e-4, 6e-4],
+    ...                            sensitivities=["J_pan"])
+    >>> batch.sensitivity("omega_pan", "J_pan").shape
+    (2,)
     """
     machine = load(model)
     if x0 is not None and initial is not None:
@@ -185,7 +100,7 @@ def simulate_batch(
     columns = {**(parameters or {}), **given}
     start = (initial if x0 is None else x0) or {}
     count = _count(columns, start, seeds, drives)
-    wanted = _Wanted.of(machine, outputs, noise or {}, t)
+    wanted = _Wanted.of(machine, outputs, noise or {}, t, tuple(dict.fromkeys(sensitivities)))
     wanted.refuse_too_large(count, len(t))
     p, p_given = _matrix(machine, columns, machine.parameter_names, "Parameter", count)
     x, x_given = _matrix(machine, start, machine.state_names, "Initial state", count)
@@ -193,7 +108,8 @@ def simulate_batch(
     on_gpu = device == GPU
     chosen = method if method is None or on_gpu else chosen_method(machine, method, METHODS)
     accuracy = checked_accuracy(machine, rtol, atol, largest_step or LARGEST_STEP)
-    if largest_step is None and (on_gpu or lanes.suits(machine, chosen, accuracy)):
+    side_by_side = not wanted.by and lanes.suits(machine, chosen, accuracy)
+    if largest_step is None and (on_gpu or side_by_side):
         accuracy = replace(accuracy, largest_step=LARGEST_SMOOTH_STEP)
     kinds = [[kind.get(n, constant(0.0)) for n in machine.input_names] for kind in drives]
     grid = t if wanted.grid else t[[0, -1]]
@@ -202,6 +118,8 @@ def simulate_batch(
     integrate: _Integrate = partial(integrate_batch, threads=threads)
     if on_gpu:
         integrate = partial(_on_gpu, rtol=rtol, atol=atol, step=step)
+    elif wanted.by:
+        integrate = wanted.with_tangents(machine, threads)
     result = _run(problem, wanted, p, x, drive, _seeds(seeds, count), integrate)
     return replace(result, t=t, given={**p_given, **x_given})
 
@@ -209,7 +127,8 @@ def simulate_batch(
 @dataclass(frozen=True, eq=False)
 class _Wanted:
     """What is kept of every run: names of final states, signals, reductions; the noise by signal,
-    its standard deviation in SI; whether the times between start and end are needed.
+    its standard deviation in SI; whether the times between start and end are needed; what outputs
+    are differentiated by.
     """
 
     final: tuple[str, ...]
@@ -217,12 +136,23 @@ class _Wanted:
     reductions: tuple[Reduction, ...]
     noise: Mapping[str, float]
     grid: bool
+    by: tuple[str, ...] = ()
 
     @staticmethod
     def of(
-        machine: Machine, outputs: str | Sequence[str], noise: Mapping[str, Any], t: FloatArray
+        machine: Machine,
+        outputs: str | Sequence[str],
+        noise: Mapping[str, Any],
+        t: FloatArray,
+        by: tuple[str, ...] = (),
     ) -> _Wanted:
-        """What `outputs` ask for. Raises InputError for unknown names."""
+        """What `outputs` ask for, and derivatives of it. Raises InputError for unknown names, and
+        for what has no derivative.
+        """
+        for name in by:
+            if name not in (*machine.parameter_names, *machine.state_names):
+                options = (*machine.parameter_names, *machine.state_names)
+                raise unknown("parameter or state", name, options)
         known = tuple(dict.fromkeys((*machine.state_names, *machine.output_names)))
         for name in noise:
             if name not in known:
@@ -230,15 +160,21 @@ class _Wanted:
         sd = {n: quantity(v, machine.units[n], f"Noise of '{n}'") for n, v in noise.items()}
         if isinstance(outputs, str):
             if outputs == FINAL:
-                return _Wanted(machine.state_names, (), (), sd, False)
+                return _Wanted(machine.state_names, (), (), sd, False, by)
             outputs = list(machine.state_names) if outputs in (ALL, STATES) else [outputs]
         signals = tuple(text for text in outputs if not is_reduction(text))
         for name in signals:
             if name not in known:
                 raise unknown("output", name, ("final", "all", *known), "; or a reduction")
         found = reductions(machine, [text for text in outputs if is_reduction(text)], known, t)
+        for each in found:
+            if by and each.kind == SETTLING:
+                raise InputError(
+                    f"Output '{each.text}' jumps from one output time to another and has no"
+                    " derivative; leave it out, or leave out `sensitivities`."
+                )
         grid = bool(signals) or any(each.kind != FINAL for each in found)
-        return _Wanted((), signals, tuple(found), sd, grid)
+        return _Wanted((), signals, tuple(found), sd, grid, by)
 
     @property
     def read(self) -> tuple[str, ...]:
@@ -255,10 +191,24 @@ class _Wanted:
                 "A GPU keeps final states alone; request the outputs 'final' or 'final(SIGNAL)', or"
                 " leave `device` out."
             )
+        if device == GPU and self.by:
+            raise InputError("A GPU computes no sensitivities; leave `device` out.")
+
+    def with_tangents(self, machine: Machine, threads: int | None) -> _Integrate:
+        """What integrates runs with their derivatives, those of outputs where these are read."""
+        from ptp_symbolic.numeric.sensitivities import directions, integrate_batch_tangents
+
+        states = [name for name in self.by if name in machine.state_names]
+        along = directions(machine, [n for n in self.by if n not in states], states)
+        of_outputs = not set(self.read) <= set(machine.state_names)
+        return partial(
+            integrate_batch_tangents, along=along, of_outputs=of_outputs, threads=threads
+        )
 
     def refuse_too_large(self, count: int, k: int) -> None:
         """Raise InputError where the results do not fit into memory."""
         need = 8.0 * count * (len(self.signals) * k + len(self.final) + len(self.reductions))
+        need *= 1 + len(self.by)
         have = machine_memory()
         if need > SHARE * have:
             raise InputError(
@@ -291,8 +241,11 @@ def _run(
     numbers |= {each.text: np.empty(count) for each in wanted.reductions}
     signals = {name: np.empty((count, k)) for name in wanted.signals}
     status, steps = np.empty(count, np.int64), np.empty(count, np.int64)
+    outputs, m = {**numbers, **signals}, len(wanted.by)
+    slopes = {name: np.empty((*v.shape, m)) for name, v in outputs.items()} if m else {}
     reasons: dict[int, str] = {}
-    rows = max(lanes_together(machine), int(CHUNK_BYTES / (8.0 * k * x.shape[1])))
+    fewest = 1 if m else lanes_together(machine)
+    rows = max(fewest, int(CHUNK_BYTES / (8.0 * k * x.shape[1] * (1 + m))))
     for first in range(0, count, rows):
         part = slice(first, min(first + rows, count))
         found = integrate(problem, p[part], x[part], drive[part])
@@ -305,10 +258,26 @@ def _run(
             numbers[each.text][part] = each(problem.times, own)
         for name in wanted.signals:
             signals[name][part] = own[name]
+        if m:
+            for name, found_slopes in _slopes(machine, wanted, own, found).items():
+                slopes[name][part] = found_slopes
     units = {name: machine.units[name] for name in (*wanted.final, *wanted.signals)}
     units |= {each.text: each.unit for each in wanted.reductions}
     words = np.array([WORDS[int(each)] for each in status])
-    return Batch(machine, problem.times, numbers, signals, units, {}, words, reasons, seeds, steps)
+    return Batch(
+        machine,
+        problem.times,
+        numbers,
+        signals,
+        units,
+        {},
+        words,
+        reasons,
+        seeds,
+        steps,
+        wanted.by,
+        slopes,
+    )
 
 
 def _on_gpu(
@@ -369,6 +338,23 @@ def _signals(
         for name in noisy:
             found[name][b] += wanted.noise[name] * generator.standard_normal(x.shape[1])
     return found
+
+
+def _slopes(
+    machine: Machine, wanted: _Wanted, own: Mapping[str, FloatArray], found: BatchStates
+) -> dict[str, FloatArray]:
+    """Derivatives [b, m] of numbers and [b, k, m] of signals, at the signals `own` [b, k]."""
+    is_state = [name in machine.state_names for name in wanted.by]
+    order = np.argsort(np.argsort(is_state, kind="stable"))  # tangents by parameters come first
+    tangents = {
+        name: found.tangents[:, :, machine.state_names.index(name)][..., order]
+        if name in machine.state_names
+        else found.output_tangents[:, :, machine.output_names.index(name)][..., order]
+        for name in wanted.read
+    }
+    slopes = {name: tangents[name][:, -1] for name in wanted.final}
+    slopes |= {each.text: each.slopes(own, tangents) for each in wanted.reductions}
+    return slopes | {name: tangents[name] for name in wanted.signals}
 
 
 def _drives(
@@ -449,14 +435,16 @@ def batch_function(
     inputs: Sequence[str],
     outputs: str | Sequence[str] = FINAL,
     times: float | ArrayLike = 10.0,
+    jac: bool = False,
     **common: Any,
-) -> Callable[[ArrayLike], FloatArray]:
+) -> Callable[[ArrayLike], Any]:
     """A machine as a function f(X [n, p]) -> Y [n, q], as SALib, openturns, chaospy and SciPy take.
 
     The columns of X are the parameters and initial states named by `inputs`, in SI; those of Y are
     the final states or the reductions of `outputs` (see `simulate_batch`, which also takes what is
-    `common` to all runs: signals and parameters by name, `parameters`, `x0`, tolerances). Rows of
-    runs that fail are NaN. Raises InputError as `simulate_batch`, and for outputs that are no
+    `common` to all runs: signals and parameters by name, `parameters`, `x0`, tolerances). With
+    `jac` it returns Y and its derivatives [n, q, p], as SciPy has it. Rows of runs that fail are
+    NaN. Raises InputError as `simulate_batch`, and for outputs that are no
     numbers.
 
     >>> import ptp_symbolic as ptp
@@ -470,7 +458,7 @@ def batch_function(
     for name in names:
         if name not in known:
             raise unknown("parameter or state", name, known)
-    wanted = _Wanted.of(machine, outputs, {}, output_times(times))
+    wanted = _Wanted.of(machine, outputs, {}, output_times(times), names if jac else ())
     if wanted.signals:
         raise InputError(
             f"Output '{wanted.signals[0]}' is a signal; give numbers, such as"
@@ -479,8 +467,8 @@ def batch_function(
     given_start = dict(common.pop("x0", None) or common.pop("initial", None) or {})
     given_parameters = dict(common.pop("parameters", None) or {})
 
-    def evaluate(points: ArrayLike) -> FloatArray:
-        """The outputs [n, q] at points [n, p], or [q] at one point [p]."""
+    def evaluate(points: ArrayLike) -> Any:
+        """The outputs [n, q] at points [n, p], or [q] at one point [p]; and their derivatives."""
         table = np.asarray(points, dtype=np.float64)
         if table.ndim not in (1, 2) or table.shape[-1] != len(names):
             raise InputError(
@@ -498,9 +486,14 @@ def batch_function(
             },
             x0={**given_start, **states},
             outputs=outputs,
+            sensitivities=wanted.by,
             **common,
         )
         values = np.stack(list(found.numbers.values()), axis=1)
-        return values if table.ndim == 2 else values[0]
+        values = values if table.ndim == 2 else values[0]
+        if not jac:
+            return values
+        slopes = np.stack(list(found.sensitivities.values()), axis=1)
+        return values, slopes if table.ndim == 2 else slopes[0]
 
     return evaluate

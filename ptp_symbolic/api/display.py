@@ -2,8 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-
-from markupsafe import escape
+from html import escape
 
 
 @dataclass(frozen=True)

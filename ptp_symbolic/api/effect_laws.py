@@ -13,7 +13,7 @@ from typing import TypeVar
 
 import numpy as np
 import sympy as sp
-from numba.core.registry import CPUDispatcher
+from numba.extending import is_jitted
 
 from ptp_symbolic.api.effect_bases import carriage_with, machine_with, machine_without
 from ptp_symbolic.api.units_by_trial import refuse_misfit
@@ -40,7 +40,7 @@ def as_python(model: AnyModel) -> AnyModel:
     space = vars(plain)
     space.update(vars(model.module))
     for name, function in vars(model.module).items():
-        if isinstance(function, CPUDispatcher):
+        if is_jitted(function):
             space[name] = FunctionType(function.py_func.__code__, space, name)
     return replace(model, module=plain)
 

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ptp_symbolic.errors import InputError, unknown
-from ptp_symbolic.numeric.data import Log, read_inputs
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.inputs import (
     PROFILES,
@@ -23,7 +22,7 @@ from ptp_symbolic.platform.units import quantity
 
 FloatArray = NDArray[np.float64]
 Input = InputSignal | float | str | Path | Callable[[float], float] | ArrayLike | tuple[Any, ...]
-Inputs = Mapping[str, Input] | Log | str | Path | Any
+Inputs = Mapping[str, Input] | str | Path | Any
 
 LOG_FILES = (".csv", ".tsv", ".txt", ".mat", ".parquet", ".bag", ".mcap", ".db3")
 TIME_COLUMNS = ("time", "t", "time [s]", "t [s]")
@@ -109,9 +108,14 @@ def _numbers(given: object, what: str) -> FloatArray:
 
 def _is_whole(given: object) -> bool:
     """Whether `given` is a table of several columns: a log, its path, or a DataFrame."""
-    if isinstance(given, Path | Log) or _is_frame(given):
+    if isinstance(given, Path) or _is_log(given) or _is_frame(given):
         return True
     return isinstance(given, str) and given.lower().endswith(LOG_FILES)
+
+
+def _is_log(given: object) -> bool:
+    logs = sys.modules.get("ptp_symbolic.numeric.data")  # reading logs takes imports of its own
+    return logs is not None and isinstance(given, logs.Log)
 
 
 def _is_frame(given: object) -> bool:
@@ -124,7 +128,7 @@ def _columns(model: Model, given: Any) -> tuple[FloatArray, dict[str, FloatArray
     if _is_frame(given):
         return _columns_of_frame(model, given)
     platform = model.platform
-    if not isinstance(given, Log | str | Path):
+    if not (isinstance(given, str | Path) or _is_log(given)):
         raise InputError(
             f"Inputs of type {type(given).__name__}; give them by name, or as a log, its path or a"
             " DataFrame."
@@ -132,9 +136,11 @@ def _columns(model: Model, given: Any) -> tuple[FloatArray, dict[str, FloatArray
     if platform is None:
         raise InputError("The model does not know its platform, which names the columns of a log.")
     names = [s.signal for s in platform.signals if s.role == "input"]
-    if isinstance(given, Log):
+    if _is_log(given):
         time, values = given.time, given.inputs
     else:
+        from ptp_symbolic.numeric.data import read_inputs
+
         time, values = read_inputs(Path(given), platform)
     return time, dict(zip(names, values.T, strict=True))
 

@@ -14,13 +14,14 @@ from ptp_symbolic.platform.units import quantity
 
 FloatArray = NDArray[np.float64]
 
+SETTLING = "settling_time"
 FORMS = {
     "final": "final(SIGNAL)",
     "largest": "largest(SIGNAL)",
     "rms": "rms(SIGNAL)",
     "rms_error": "rms_error(SIGNAL; REFERENCE)",
     "largest_error": "largest_error(SIGNAL; REFERENCE)",
-    "settling_time": "settling_time(SIGNAL; BAND)",
+    SETTLING: "settling_time(SIGNAL; BAND)",
     "pointing_error": "pointing_error(theta_pan = REFERENCE; theta_tilt = REFERENCE)",
     "largest_pointing_error": "largest_pointing_error(theta_pan = REFERENCE; ...)",
 }
@@ -43,19 +44,46 @@ class Reduction:
 
     def __call__(self, times: FloatArray, signals: Mapping[str, FloatArray]) -> FloatArray:
         """The numbers [b] of `signals` [b, k] at `times` [k] in s; NaN where a signal is NaN."""
-        if "pointing" in self.kind:
-            value = line_of_sight_error(signals, self.references)
-        else:
-            (name,) = self.signals
-            value = signals[name] - self.references.get(name, 0.0)
+        value = self._value(signals)
         if self.kind == "final":
             return value[:, -1].copy()
-        if self.kind == "settling_time":
+        if self.kind == SETTLING:
             return self._settling(times, value)
         if self.kind.startswith("largest"):
             found: FloatArray = np.abs(value).max(axis=1)
             return found
         return np.sqrt(np.mean(value**2, axis=1))
+
+    def slopes(
+        self, signals: Mapping[str, FloatArray], tangents: Mapping[str, FloatArray]
+    ) -> FloatArray:
+        """The derivatives [b, m] of the numbers, by the derivatives `tangents` [b, k, m] of
+        `signals` [b, k]; NaN where there are none.
+
+        The largest value is differentiated where it is met.
+        """
+        value = self._value(signals)
+        if "pointing" in self.kind:
+            slope = line_of_sight_slope(signals, tangents, self.references)
+        else:
+            slope = tangents[self.signals[0]]
+        if self.kind == "final":
+            return slope[:, -1].copy()
+        if self.kind.startswith("largest"):
+            rows, where = np.arange(len(value)), np.abs(value).argmax(axis=1)
+            value, slope = value[rows, where][:, None], slope[rows, where][:, None]
+        # The derivative of a root of a mean square; that of the magnitude of a single value too.
+        square = np.mean(value**2, axis=1)[:, None]
+        with np.errstate(invalid="ignore"):
+            found = np.mean(value[:, :, None] * slope, axis=1) / np.sqrt(square)
+        return np.where((square == 0.0) & (slope == 0.0).all(axis=1), 0.0, found)
+
+    def _value(self, signals: Mapping[str, FloatArray]) -> FloatArray:
+        """What the number is of [b, k]: a signal, or its deviation from the reference."""
+        if "pointing" in self.kind:
+            return line_of_sight_error(signals, self.references)
+        (name,) = self.signals
+        return signals[name] - self.references.get(name, 0.0)
 
     def _settling(self, times: FloatArray, value: FloatArray) -> FloatArray:
         """Time in s of the first sample from which on the signal stays within the band about its
@@ -78,6 +106,33 @@ def line_of_sight_error(
     aim_pan, aim_tilt = references.get(PAN, pan), references.get(TILT, tilt)
     across = np.cos(tilt) * np.cos(aim_tilt) * np.sin(0.5 * (pan - aim_pan)) ** 2
     return 2.0 * np.arcsin(np.sqrt(np.sin(0.5 * (tilt - aim_tilt)) ** 2 + across))
+
+
+def line_of_sight_slope(
+    signals: Mapping[str, FloatArray],
+    tangents: Mapping[str, FloatArray],
+    references: Mapping[str, FloatArray],
+) -> FloatArray:
+    """Derivatives [b, k, m] of `line_of_sight_error`, by those of the angles [b, k, m]; zero where
+    the error is zero, and has none.
+    """
+    pan, tilt = signals.get(PAN, np.zeros((1, 1))), signals.get(TILT, np.zeros((1, 1)))
+    aim_pan, aim_tilt = references.get(PAN, pan), references.get(TILT, tilt)
+    square = np.sin(0.5 * (pan - aim_pan)) ** 2
+    # Of the haversine h = sin^2(error / 2), by pan and tilt; an axis without reference aims itself.
+    by_pan = 0.5 * np.cos(tilt) * np.cos(aim_tilt) * np.sin(pan - aim_pan)
+    by_tilt = 0.5 * np.sin(tilt - aim_tilt) - np.sin(tilt) * np.cos(aim_tilt) * square
+    if TILT not in references:
+        by_tilt = -2.0 * np.sin(tilt) * np.cos(tilt) * square
+    error = line_of_sight_error(signals, references)
+    slopes = [
+        by[:, :, None] * tangents[name]
+        for name, by in ((PAN, by_pan), (TILT, by_tilt))
+        if name in tangents
+    ]
+    safe = np.where(error == 0.0, np.inf, np.sin(error))
+    found: FloatArray = 2.0 * np.sum(slopes, axis=0) / safe[:, :, None]
+    return found
 
 
 def reductions(
@@ -112,7 +167,7 @@ def _reduction(model: Model, text: str, known: Sequence[str], times: FloatArray)
     needs_second = ";" in FORMS[kind]
     if needs_second != bool(separator and second):
         raise InputError(f"Output '{text}': write {FORMS[kind]}.")
-    if kind == "settling_time":
+    if kind == SETTLING:
         band = quantity(_number(second), unit, f"Band of '{text}'")
         if not band > 0.0:
             raise InputError(f"Output '{text}': a band of {band:g} {unit}; give one above zero.")

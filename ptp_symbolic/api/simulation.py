@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from inspect import signature
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,11 +14,13 @@ from ptp_symbolic.api.machine import Machine, Source, load
 from ptp_symbolic.api.run import Run
 from ptp_symbolic.api.values import Quantity, Values, parameter_values, state_vector
 from ptp_symbolic.errors import InputError, unknown
-from ptp_symbolic.numeric import sensitivities
 from ptp_symbolic.numeric.simulation import run as numeric
 from ptp_symbolic.numeric.simulation.feedback import Feedback
 from ptp_symbolic.numeric.simulation.integration import MOST_STEPS
 from ptp_symbolic.numeric.simulation.run import output_times
+
+if TYPE_CHECKING:
+    from ptp_symbolic.numeric.sensitivities import Sensitivities
 
 FloatArray = NDArray[np.float64]
 Times = float | ArrayLike | None
@@ -121,7 +123,7 @@ def sensitivity(
     *,
     x0: Values | None = None,
     **values: Input | Quantity,
-) -> sensitivities.Sensitivities:
+) -> Sensitivities:
     """Derivatives of states [k, n, m] and outputs [k, ny, m] by parameters (None: all) and by
     initial states, along the run that `simulate` makes of the same arguments.
 
@@ -133,6 +135,8 @@ def sensitivity(
     >>> found.states.shape
     (501, 4, 1)
     """
+    from ptp_symbolic.numeric import sensitivities
+
     machine = load(model)
     if x0 is not None and initial is not None:
         raise InputError("`x0` and `initial` are both the state at the start; give one of them.")

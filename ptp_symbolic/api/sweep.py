@@ -20,7 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from ptp_symbolic.api.batch import SHARE, Batch, machine_memory, simulate_batch
+from ptp_symbolic.api.batch import SHARE, machine_memory, simulate_batch
+from ptp_symbolic.api.batch_results import Batch, slope_name
 from ptp_symbolic.api.extras import extra_library
 from ptp_symbolic.api.machine import Machine
 from ptp_symbolic.api.reductions import line_of_sight_error, reference
@@ -51,7 +52,7 @@ class SweepPlan:
     """What a sweep computes: the hash of the equations; `vary`: per name its distribution as text;
     number of samples, seed of the Sobol sequence; duration and interval in s; inputs, initial
     states, outputs, references of the line of sight by name; tolerances; runs per chunk; whether
-    whole trajectories are kept, and values for bands.
+    whole trajectories are kept, and values for bands; what outputs are differentiated by.
     """
 
     model: str
@@ -70,6 +71,7 @@ class SweepPlan:
     chunk: int
     whole: bool = False
     bands: bool = True
+    sensitivities: Sequence[str] = ()
 
     @property
     def chunks(self) -> int:
@@ -159,6 +161,7 @@ def compute_part(machine: Machine, plan: SweepPlan, chunk: int, threads: int | N
         atol=plan.atol,
         threads=threads,
         x0={**plan.initial, **states},
+        sensitivities=plan.sensitivities,
     )
     table = {"run": np.arange(first, last), **found.table()}
     table["seed"] = np.full(last - first, plan.seed)
@@ -197,9 +200,13 @@ def refuse_plan(machine: Machine, plan: SweepPlan, out: Path) -> None:
             f"{plan.samples} samples in chunks of {plan.chunk}; give at least one, and at most"
             f" {2**SOBOL_BITS} samples."
         )
+    for name in plan.sensitivities:
+        if name not in known:
+            raise unknown("parameter or state", name, known)
     if not plan.vary:
         raise InputError(f"Nothing varies; give `vary`: {FORMS}.")
     k, n = len(plan.times), len(machine.state_names) + len(plan.signals)
+    n *= 1 + len(plan.sensitivities)
     need, have = 8.0 * min(plan.chunk, plan.samples) * k * n, machine_memory()
     if need > SHARE * have:
         raise InputError(
@@ -207,7 +214,8 @@ def refuse_plan(machine: Machine, plan: SweepPlan, out: Path) -> None:
             f" {need / 1e9:.3g} GB"
             f" of memory, and this machine has {have / 1e9:.3g} GB; take a smaller `chunk`."
         )
-    row = 8.0 * (len(plan.vary) + len(plan.outputs) + 4)
+    numbers = len(plan.outputs) * (1 + len(plan.sensitivities))
+    row = 8.0 * (len(plan.vary) + numbers + 4)
     row += 8.0 * BAND_TIMES * (len(plan.signals) + bool(plan.aim)) if plan.bands else 0.0
     row += 8.0 * k * len(plan.signals) if plan.whole else 0.0
     place = next(p for p in (out, *out.absolute().parents) if p.is_dir())
@@ -384,21 +392,34 @@ def bands_of(plan: SweepPlan, out: Path) -> dict[str, FloatArray]:
 
 
 def summary_of(plan: SweepPlan, out: Path) -> dict[str, Any]:
-    """Number of runs by status, and mean, standard deviation and quantiles of every output."""
+    """Number of runs by status; mean, standard deviation and quantiles of every output, and mean
+    and root mean square of its derivatives (the measures of Sobol and Kucherenko, 2009).
+    """
     parquet = extra_library("pyarrow.parquet", "sweep")
-    columns = ["status", *plan.outputs]
+    slopes = {(n, by): slope_name(n, by) for n in plan.outputs for by in plan.sensitivities}
+    columns = ["status", *plan.outputs, *slopes.values()]
     tables = [parquet.read_table(part_path(out, c), columns=columns) for c in range(plan.chunks)]
+
+    def finite(name: str) -> FloatArray:
+        values = np.concatenate([table[name].to_numpy() for table in tables])
+        found: FloatArray = values[np.isfinite(values)]
+        return found
+
     status = np.concatenate([table["status"].to_numpy() for table in tables])
     words, counts = np.unique(status.astype(np.str_), return_counts=True)
-    outputs = {}
+    outputs: dict[str, Any] = {}
     for name in plan.outputs:
-        values = np.concatenate([table[name].to_numpy() for table in tables])
-        values = values[np.isfinite(values)]
+        values = finite(name)
         if len(values):
             spread = float(values.std(ddof=1)) if len(values) > 1 else 0.0
             quantiles = dict(
                 zip(map(str, QUANTILES), map(float, np.quantile(values, QUANTILES)), strict=True)
             )
             outputs[name] = {"mean": float(values.mean()), "sd": spread, "quantiles": quantiles}
+    for (name, by), column in slopes.items():
+        values = finite(column)
+        if len(values):
+            size = {"mean": float(values.mean()), "rms": float(np.sqrt(np.mean(values**2)))}
+            outputs[name].setdefault("sensitivities", {})[by] = size
     by_status = dict(zip(map(str, words), map(int, counts), strict=True))
     return {"runs": plan.samples, "status": by_status, "outputs": outputs}

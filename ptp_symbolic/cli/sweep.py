@@ -52,6 +52,13 @@ if TYPE_CHECKING:
     help="Reference of the line of sight; adds the pointing error and its band.",
 )
 @click.option("--signal", "signals", multiple=True, help="Drawn as a band. Default: the angles.")
+@click.option(
+    "--sensitivity",
+    "sensitivities",
+    multiple=True,
+    metavar="NAME",
+    help="A parameter or initial state by which every output is differentiated; repeat.",
+)
 @click.option("--rtol", type=float, default=1e-6, show_default=True)
 @click.option("--atol", type=float, default=1e-8, show_default=True, help="rad.")
 @click.option("--whole", is_flag=True, help="Keep the signals of all runs (trajectories.zarr).")
@@ -72,6 +79,7 @@ def sweep(
     outputs: tuple[str, ...],
     aim: tuple[str, ...],
     signals: tuple[str, ...],
+    sensitivities: tuple[str, ...],
     rtol: float,
     atol: float,
     whole: bool,
@@ -112,9 +120,13 @@ def sweep(
         targets,
         rtol,
         atol,
-        chunk or _rows(duration, every, len(machine.state_names) + len(shown)),
+        chunk
+        or _rows(
+            duration, every, (len(machine.state_names) + len(shown)) * (1 + len(sensitivities))
+        ),
         whole,
         bands,
+        sensitivities,
     )
     with progress_line() as progress:
         run_sweep(machine, plan, out, resume, cluster, progress)

@@ -2,8 +2,6 @@
 
 from typing import Any
 
-import tomlkit
-
 from ptp_symbolic.platform.declaration import ParameterDeclaration, Platform, SignalDeclaration
 
 
@@ -12,6 +10,8 @@ def platform_text(platform: Platform) -> str:
 
     Raises ValueError for a parameter with one bound alone, which a TOML cannot say.
     """
+    import tomlkit
+
     sections = {
         "platform": {
             "name": platform.name,
@@ -38,6 +38,8 @@ def _joints(platform: Platform) -> dict[str, Any]:
     """The kinds of the joints, said where one is linear."""
     if not platform.linear_axes:
         return {}
+    import tomlkit
+
     kinds = tomlkit.inline_table()
     kinds.update({axis: "linear" for axis in platform.linear_axes})
     return {"joints": kinds}

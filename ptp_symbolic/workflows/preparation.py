@@ -11,6 +11,7 @@ from ptp_symbolic.models.declared import free_parameters, known_values, refuse_u
 from ptp_symbolic.numeric.data import Log, refuse_motionless, refuse_wrapped_angles, remarks
 from ptp_symbolic.numeric.diagnose.preparation import task_of
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, usable_cores
+from ptp_symbolic.numeric.identify.ahead import FIT, begin_fit
 from ptp_symbolic.numeric.identify.constants import MATERIAL
 from ptp_symbolic.numeric.identify.evidence import Allowance, InTurn, Threads, simulates
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
@@ -20,6 +21,7 @@ from ptp_symbolic.numeric.simulation.ahead import (
     RUNNER,
     SAMPLED_RUNNER,
     compile_ahead,
+    wait_until_compiled,
 )
 from ptp_symbolic.platform import (
     EffectDeclaration,
@@ -55,6 +57,7 @@ def material_of(platform: Platform) -> float:
 def model_of(platform: Platform) -> Model:
     """The model of a platform; on a new machine, its kernels are compiled meanwhile."""
     placed = place_effects(platform)
+    begin_fit()
     if any(effect.turning_contribution_at(at).samplers for effect, at in placed):
         compile_ahead(SAMPLED_RUNNER)
     else:
@@ -88,6 +91,7 @@ def task_for(
     `allowance` is what the search may take (None: no limit).
     """
     progress("preparing the simulation")
+    wait_until_compiled(FIT)
     refuse_unknown_signals(platform, model)
     allowance = Allowance() if allowance is None else allowance
     with naming_file(platform):

@@ -1,5 +1,6 @@
 """`ptp-symbolic sweep`: rows against a closed form, whole chunks whatever happens, a cluster."""
 
+import json
 import os
 import resource
 import signal
@@ -58,6 +59,27 @@ def rows_of(out: Path) -> dict[str, np.ndarray]:
 
 def parts_of(out: Path) -> list[bytes]:
     return [path.read_bytes() for path in sorted((out / "trajectories").glob("part-*.parquet"))]
+
+
+def test_every_row_has_the_derivatives_of_its_numbers(
+    call: Call, wheel: Path, tmp_path: Path
+) -> None:
+    out, by = tmp_path / "out", ("--sensitivity", "omega_pan", "--sensitivity", "b_pan")
+    done = call("sweep", "--platform", wheel, *SETTINGS, *by, "--out", out)
+    assert done.code == 0, done
+    rows, h = rows_of(out), 1e-7
+    damping, start, t = rows["b_pan"], rows["omega_pan"], np.array(TIME)
+    of_start = rows["d final(omega_pan) / d omega_pan"]
+    assert of_start == pytest.approx(np.exp(-damping * TIME / INERTIA), rel=1e-4, abs=1e-7)
+    exact = (rate(damping + h, start, t) - rate(damping - h, start, t)) / (2.0 * h)
+    of_damping = rows["d final(omega_pan) / d b_pan"]
+    assert of_damping == pytest.approx(exact, rel=1e-3)
+    summary = json.loads((out / "summary.json").read_text())["outputs"]["final(omega_pan)"]
+    found = summary["sensitivities"]["b_pan"]
+    assert found["mean"] == pytest.approx(of_damping.mean())
+    assert found["rms"] == pytest.approx(np.sqrt(np.mean(of_damping**2)))
+    refused = call("sweep", "--platform", wheel, *SETTINGS, "--sensitivity", "x", "--out", out)
+    assert refused.code == 2 and "x" in refused.err
 
 
 def test_every_row_is_the_closed_form_of_its_values(

@@ -45,6 +45,32 @@ def test_readings_follow_the_torque_when_it_acts() -> None:
     assert found.y[1:, along + 2] == pytest.approx(np.full(9, 9.81), rel=1e-12)
 
 
+def test_readings_of_a_batch_are_differentiated_by_delay_and_inertia() -> None:
+    times, inertias = np.linspace(0.1, 0.9, 9), np.array([0.05, 0.08])
+    model = emission.emit(PLATFORM)
+    (delay,) = (p.name for p in model.parameters if p.unit == "s")
+    across, along = "specific_force_y_imu", "rms(specific_force_x_imu)"
+    batch = ptp.simulate_batch(
+        model,
+        np.array([0.0, *times]),
+        [{"tau_pan": ramp(0.0, SLOPE, 0.0, 1.0)}] * 2,
+        {"J_pan": inertias, "x_imu": PLACE, delay: DELAY},
+        outputs=[across, along],
+        sensitivities=[delay, "J_pan"],
+    )
+    acting = SLOPE * (times - DELAY)
+    for b, inertia in enumerate(inertias):
+        exact = -PLACE * acting / inertia**2
+        assert batch.sensitivity(across, "J_pan")[b, 1:] == pytest.approx(exact, rel=1e-6)
+        exact = np.full(9, -PLACE * SLOPE / inertia)
+        assert batch.sensitivity(across, delay)[b, 1:] == pytest.approx(exact, rel=1e-6)
+        rates = np.array([0.0, *acting * (times - DELAY) / (2.0 * inertia)])
+        size = PLACE * np.sqrt(np.mean(rates**4))
+        assert batch.sensitivity(along, "J_pan")[b] == pytest.approx(
+            -2.0 * size / inertia, rel=1e-6
+        )
+
+
 def test_a_linear_joint_carries_no_imu() -> None:
     slide = Platform("s", "s", ("pan",), 9.81, EFFECTS[:2], (), (), linear_axes=("pan",))
     with pytest.raises(InputError, match="'imu' makes no sense on a linear joint: it is mounted"):

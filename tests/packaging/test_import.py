@@ -48,6 +48,19 @@ def test_import_is_free_of_what_takes_time(tmp_path: Path) -> None:
     assert ran.stdout == "[]\n[]\n", ran.stderr
 
 
+def test_a_simulation_loads_what_it_runs_and_no_more(tmp_path: Path) -> None:
+    """Once compiled, it needs neither numba's compiler nor what reads, draws and derives."""
+    program = (
+        "import sys, ptp_symbolic as ptp; ptp.simulate('pan_drive', 0.01, u_pan='step:1@0');"
+        "heavy = {'sympy', 'pandas', 'matplotlib', 'click', 'rich', 'tomlkit', 'scipy.ndimage',"
+        " 'scipy.stats', 'scipy.linalg', 'numba.np.linalg', 'ptp_symbolic.numeric.data'};"
+        "print(sorted(heavy & set(sys.modules)))"
+    )
+    run_python(tmp_path, "-c", program)
+    ran = run_python(tmp_path, "-c", program)
+    assert ran.stdout == "[]\n", ran.stderr
+
+
 @pytest.mark.parametrize("room", NUMERIC_WING)
 def test_numeric_wing_works_where_sympy_is_missing(room: str, tmp_path: Path) -> None:
     program = f"import sys; sys.modules['sympy'] = None; import ptp_symbolic.numeric.{room}"

@@ -11,7 +11,7 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
+from numba import njit, types
 from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
@@ -24,6 +24,7 @@ from ptp_symbolic.numeric.simulation.kernels.calls import (
     call,
     compiled_addresses,
 )
+from ptp_symbolic.numeric.simulation.kernels.records import CUBE, INTEGERS, MATRIX, VECTOR
 
 IntArray = NDArray[np.int64]
 
@@ -49,6 +50,9 @@ class Layout(NamedTuple):
     rows: int
     states: int
     modes: int
+
+
+LAYOUT = types.NamedTuple((*[INTEGERS] * 10, *[types.int64] * 3), Layout)
 
 
 def layout_of(model: Model) -> Layout:
@@ -407,3 +411,17 @@ def angles_behind_sensors(addresses, layout, shown, time, measured, inputs, p, s
             if left <= NEXT_TO_NONE:
                 break
     return angles
+
+
+_FLAGS, _MOTION = types.boolean[::1], types.NamedTuple((VECTOR, *[MATRIX] * 5), Motion)
+_ALONG = (INTEGERS, LAYOUT, _MOTION, VECTOR, VECTOR)  # addresses, layout, motion, p, resting
+AHEAD = (
+    (gear_ahead, (*_ALONG, MATRIX, _FLAGS)),
+    (gear_pushes, (*_ALONG, MATRIX, MATRIX)),
+    (further_states, (*_ALONG, _FLAGS, _FLAGS, _FLAGS, CUBE)),
+    (torques_along, (*_ALONG, MATRIX, MATRIX, MATRIX, MATRIX, INTEGERS)),
+    (
+        angles_behind_sensors,
+        (INTEGERS, LAYOUT, INTEGERS, VECTOR, MATRIX, MATRIX, VECTOR, types.int64),
+    ),
+)

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
+from numba import njit, types
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.along_motion import NEXT_TO_NONE
@@ -25,7 +25,13 @@ from ptp_symbolic.numeric.simulation.integration import (
     integrate,
 )
 from ptp_symbolic.numeric.simulation.kernels.calls import call, output_addresses
-from ptp_symbolic.numeric.simulation.kernels.records import DONE
+from ptp_symbolic.numeric.simulation.kernels.records import (
+    CUBE,
+    DONE,
+    INTEGERS,
+    MATRIX,
+    VECTOR,
+)
 from ptp_symbolic.numeric.simulation.signals.inputs import (
     delay_columns,
     delayed,
@@ -169,6 +175,28 @@ def _compare(functions, signals, time, x, s, u, p, measured, columns, picked, we
                 j[row, c] = -weight[o] * total_derivative
 
 
+AHEAD = (
+    (
+        _compare,
+        (
+            INTEGERS,
+            types.int64,
+            VECTOR,
+            MATRIX,
+            CUBE,
+            MATRIX,
+            VECTOR,
+            MATRIX,
+            INTEGERS,
+            INTEGERS,
+            VECTOR,
+            VECTOR,
+            MATRIX,
+        ),
+    ),
+)
+
+
 def start_state(
     model: Model, run: Run, p: FloatArray, z: FloatArray, columns: NDArray[np.int64]
 ) -> tuple[FloatArray, FloatArray]:
@@ -290,7 +318,7 @@ def evaluate(
             found.s,
             values_at(table, run.time) if np.any(late) else run.held_inputs,
             p,
-            run.measured,
+            np.ascontiguousarray(run.measured),
             columns,
             run.outputs,
             run.weight,

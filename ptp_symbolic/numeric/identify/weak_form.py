@@ -9,11 +9,12 @@ function is (1 - s^2)^4 over a window that is centred on the sample.
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
+from numba import njit, types
 from numpy.typing import NDArray
 from scipy.special import beta
 
 from ptp_symbolic.numeric.identify.constants import LARGEST_GAP, LEAST_SAMPLES
+from ptp_symbolic.numeric.simulation.kernels.records import CUBE, INTEGERS, MATRIX, VECTOR
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -198,3 +199,14 @@ def curvature_noise(period: float, half_width: float) -> float:
     """
     square = 64.0 * (49.0 * beta(2.5, 5.0) - 14.0 * beta(1.5, 5.0) + beta(0.5, 5.0))
     return float(np.sqrt(period / half_width * square) / beta(0.5, 5.0) / half_width**2)
+
+
+_WINDOWS = types.NamedTuple(
+    (INTEGERS, INTEGERS, INTEGERS, VECTOR, VECTOR, INTEGERS, types.boolean), Windows
+)
+AHEAD = (
+    (_empty_broken, (VECTOR, types.float64, INTEGERS, INTEGERS, INTEGERS)),
+    (_weigh, (VECTOR, types.float64, types.int64, *[INTEGERS] * 4, VECTOR, VECTOR)),
+    (averages, (_WINDOWS, MATRIX)),
+    (_fill_moments, (VECTOR, MATRIX, types.float64, MATRIX, CUBE)),
+)

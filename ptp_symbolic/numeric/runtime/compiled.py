@@ -20,6 +20,7 @@ from types import FunctionType
 from typing import Any
 
 from numba.core import caching, config, dispatcher
+from numba.core.runtime import rtsys
 
 from ptp_symbolic.numeric.runtime import shipped
 
@@ -60,15 +61,19 @@ class SealedCache(caching.FunctionCache):
         self._cache_file = SealedFiles(self._cache_path, self._impl.filename_base, stamp)
 
     def load_overload(self, signature: Any, target: Any) -> Any:
-        """The compiled function, or None where there is none that can be used."""
+        """The compiled function, or None where there is none that can be used.
+
+        numba would first load all that it compiles with, a third of a second: whoever compiles
+        loads that then.
+        """
+        rtsys.initialize(target)
         with suppress(OSError):
             if shipped.fits():
                 name = self._shipped_name(signature, target)
                 came_along = SealedFiles(str(shipped.FOLDER), name, None)._load_data(name)
-                target.refresh()
                 return self._impl.rebuild(target, came_along)
         with suppress(OSError):
-            return super().load_overload(signature, target)
+            return self._load_overload(signature, target)
         return None
 
     def save_overload(self, signature: Any, data: Any) -> None:

@@ -5,13 +5,14 @@ import importlib
 import importlib.util
 import sys
 from dataclasses import replace
+from functools import lru_cache
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from types import CodeType, ModuleType
 
 from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.platform import read_platform
+from ptp_symbolic.platform import Platform, read_platform
 
 TRAILER = "# END sha256 "
 COMMITTED = {
@@ -42,7 +43,12 @@ def load_model(name: str) -> Model:
         raise unknown("model", name, model_names())
     found = load_module(generated_folder() / f"{name}.py", f"ptp_symbolic.generated.{name}")
     preset = COMMITTED.get(name)
-    return found if preset is None else replace(found, platform=read_platform(preset))
+    return found if preset is None else replace(found, platform=_preset(preset))
+
+
+@lru_cache(maxsize=len(COMMITTED))
+def _preset(name: str) -> Platform:
+    return read_platform(name)
 
 
 def load_module(path: Path, import_name: str) -> Model:

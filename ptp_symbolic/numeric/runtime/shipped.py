@@ -59,12 +59,20 @@ def fits() -> bool:
 def name_of(function: FunctionType, signature: Any, code: Any) -> str:
     """Name of the file of a function for a signature; `code` is what numba knows it by.
 
-    It changes with numba, Python, the kind of machine and the sources.
+    It changes with numba, Python, the kind of machine and the sources; compiled functions hold the
+    constants of their folder as they were.
     """
-    own = Path(function.__code__.co_filename).read_bytes()
+    source = Path(function.__code__.co_filename)
+    own = source.read_bytes() + _constants_in(source.parent)
     facts = (function.__module__, str(signature), repr(code), hashlib.sha256(own).hexdigest())
     digest = hashlib.sha256(repr((*facts, *_surroundings())).encode()).hexdigest()
     return f"{function.__name__}-{digest[:24]}.code"
+
+
+@lru_cache(maxsize=64)
+def _constants_in(folder: Path) -> bytes:
+    constants = folder / "constants.py"
+    return constants.read_bytes() if constants.is_file() else b""
 
 
 @lru_cache(maxsize=1)

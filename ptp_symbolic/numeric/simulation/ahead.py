@@ -38,16 +38,20 @@ def compile_ahead(*kernels: str) -> None:
     done before or is under way.
     """
     for kernel in kernels:
-        if kernel in _begun or _mark(kernel).exists() or _came_along(kernel):
-            continue
-        if not sys.executable:  # embedded in another program
-            return
-        command = [sys.executable, "-P", "-c", COMPILE[kernel]]
-        nothing = subprocess.DEVNULL
-        with contextlib.suppress(OSError):
-            process = subprocess.Popen(command, stdin=nothing, stdout=nothing, stderr=nothing)
-            atexit.register(process.kill)
-            _begun[kernel] = process
+        begin(kernel, COMPILE[kernel])
+
+
+def begin(kernel: str, code: str) -> None:
+    """Begin to compile the kernel by `code` in another process, as `compile_ahead` does."""
+    known = kernel in _begun or _mark(kernel).exists() or _came_along(kernel)
+    if known or not sys.executable:  # embedded in another program
+        return
+    command = [sys.executable, "-P", "-c", code]
+    nothing = subprocess.DEVNULL
+    with contextlib.suppress(OSError):
+        process = subprocess.Popen(command, stdin=nothing, stdout=nothing, stderr=nothing)
+        atexit.register(process.kill)
+        _begun[kernel] = process
 
 
 def wait_until_compiled(kernel: str) -> None:

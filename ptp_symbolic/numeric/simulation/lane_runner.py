@@ -10,8 +10,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit, types
-from numba.core.errors import NumbaExperimentalFeatureWarning
+from numba import NumbaExperimentalFeatureWarning, njit, types
 
 from ptp_symbolic.numeric.simulation.kernels.records import INNER, KERNEL
 

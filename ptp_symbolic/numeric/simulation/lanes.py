@@ -16,7 +16,7 @@ events, one after the other in every thread.
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
 
@@ -29,9 +29,11 @@ from ptp_symbolic.numeric.runtime.model import BOUND_SLACK, Model
 from ptp_symbolic.numeric.simulation.integration import (
     EXPLICIT,
     Accuracy,
+    Solution,
     default_method,
     integrate,
 )
+from ptp_symbolic.numeric.simulation.kernels.calls import call, output_addresses
 from ptp_symbolic.numeric.simulation.kernels.records import DONE, KERNEL, MATRIX, VECTOR
 from ptp_symbolic.numeric.simulation.lane_runner import (
     ALL,
@@ -244,13 +246,16 @@ class BatchProblem:
 class BatchStates:
     """States of b trajectories: status [b] (see `kernels.records`, or IMPOSSIBLE) and `reasons` [b]
     in words, empty where it is DONE; steps tried [b]; x [b, k, n] at the times, NaN where a run
-    failed.
+    failed; where they are asked for, the derivatives of states [b, k, n, m] and of what the sensors
+    show [b, k, ny, m], NaN there too.
     """
 
     status: NDArray[np.int64]
     reasons: list[str]
     steps: NDArray[np.int64]
     x: FloatArray
+    tangents: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 0, 0)))
+    output_tangents: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 0, 0)))
 
 
 def integrate_batch(
@@ -259,11 +264,13 @@ def integrate_batch(
     x: FloatArray,
     drive: NDArray[np.int64],
     threads: int | None = None,
+    alone: Callable[[int, InputTable], Solution] | None = None,
 ) -> BatchStates:
     """Integrate from every x [b, n] at parameters p [b, np], driven by `drives[drive[b]]`, on all
     cores or as many `threads`.
 
-    Values that are impossible, and runs that do not reach their end, are reported in their place.
+    Where `alone` is given, it integrates each trajectory b, driven by a table. Values that are
+    impossible, and runs that do not reach their end, are reported in their place.
     """
     count, (k, n) = len(p), (len(problem.times), x.shape[1])
     found = BatchStates(
@@ -276,7 +283,7 @@ def integrate_batch(
     stops = [table.with_stops(problem.times[[0, -1]]) for table in tables]
     threads = threads or cores()
     left = possible
-    if suits(problem.model, problem.method, problem.accuracy):
+    if alone is None and suits(problem.model, problem.method, problem.accuracy):
         left = integrate_in_lanes(
             problem.model,
             problem.times,
@@ -292,9 +299,23 @@ def integrate_batch(
             found.steps,
         )
 
+    def by_events(b: int, table: InputTable) -> Solution:
+        late = table is not tables[drive[b]]
+        return integrate(
+            problem.model,
+            problem.method,
+            p[b],
+            x[b],
+            table,
+            table.held,
+            table.with_stops(problem.times[[0, -1]]) if late else stops[drive[b]],
+            problem.times,
+            problem.accuracy,
+        )
+
     def one(b: int) -> None:
-        kind = drive[b]
-        _one_run(problem, tables[kind], stops[kind], p[b], x[b], b, found)
+        table = delayed(tables[drive[b]], delays_of(problem.model, p[b]))
+        _note(problem.model, alone or by_events, table, p[b], b, found)
 
     _in_threads(one, left, threads)
     return found
@@ -307,39 +328,24 @@ def cores() -> int:
     return os.cpu_count() or 1
 
 
-def _one_run(
-    problem: BatchProblem,
+def _note(
+    model: Model,
+    run: Callable[[int, InputTable], Solution],
     table: InputTable,
-    stops: FloatArray,
     p: FloatArray,
-    x: FloatArray,
     b: int,
     to: BatchStates,
 ) -> None:
-    """Trajectory `b` by the runner with events, written to its place."""
-    model, times = problem.model, problem.times
-    if np.any(model.input_delays >= 0):
-        table = delayed(table, delays_of(model, p))
-        stops = table.with_stops(times[[0, -1]])
+    """Integrate trajectory `b` at p [np] by `run`, and write the result to its place."""
     try:
-        run = integrate(
-            model,
-            problem.method,
-            p,
-            x,
-            table,
-            table.held,
-            stops,
-            times,
-            problem.accuracy,
-        )
-        to.steps[b], to.status[b] = run.steps, run.status
-        refuse_failure(model, p, run.status, run.reached, run.state)
+        found = run(b, table)
+        to.steps[b], to.status[b] = found.steps, found.status
+        refuse_failure(model, p, found.status, found.reached, found.state)
     except InputError as error:
         to.status[b] = to.status[b] if to.status[b] != DONE else IMPOSSIBLE
         to.reasons[b] = str(error)
         return
-    to.x[b] = run.x
+    to.x[b] = found.x
 
 
 def _in_threads(one: Callable[[int], None], rows: NDArray[np.int64], threads: int) -> None:
@@ -384,21 +390,13 @@ def impossible(model: Model, p: FloatArray, x: FloatArray) -> tuple[IntArray, li
     return status, reasons
 
 
-_OUTPUTS = types.FunctionType(types.void(types.float64, *[VECTOR] * 4))
-
-
-@njit(
-    types.void(
-        _OUTPUTS, VECTOR, types.float64[:, :, ::1], MATRIX, MATRIX, types.float64[:, :, ::1]
-    ),
-    cache=True,
-    **KERNEL,
-)
+@njit(types.void(types.int64, VECTOR, MATRIX, MATRIX, VECTOR, MATRIX), cache=True, **KERNEL)
 def fill_outputs(outputs, times, x, u, p, y):
-    """Write what sensors show y [b, k, ny] along x [b, k, n], with u [k, nu] and p [b, np]."""
-    for b in range(len(p)):
-        for i in range(len(times)):
-            outputs(times[i], x[b, i], u[i], p[b], y[b, i])
+    """Write what sensors show y [k, ny] along x [k, n], with u [k, nu] and p [np]; `outputs` is the
+    address of the function of the model.
+    """
+    for i in range(len(times)):
+        call(outputs, times[i], x[i], u[i], p, y[i])
 
 
 def outputs_along(
@@ -409,9 +407,9 @@ def outputs_along(
     Without noise; inputs are late where parameters say so.
     """
     y = np.full((*x.shape[:2], len(problem.model.output_names)), np.nan)
+    outputs = int(output_addresses(problem.model.module)[0])
     for b in range(len(p)):
         table = delayed(stack(problem.drives[drive[b]]), delays_of(problem.model, p[b]))
         u = values_at(table, problem.times)
-        row = slice(b, b + 1)
-        fill_outputs(problem.model.module.outputs, problem.times, x[row], u, p[row], y[row])
+        fill_outputs(outputs, problem.times, x[b], u, p[b], y[b])
     return y

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,10 +19,6 @@ from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.buffers import limited_states
 from ptp_symbolic.numeric.simulation.feedback import Commands, Feedback, integrate_with_feedback
-from ptp_symbolic.numeric.simulation.fixed_integration import (
-    FixedSolution,
-    integrate_in_fixed_steps,
-)
 from ptp_symbolic.numeric.simulation.integration import (
     METHODS,
     MOST_STEPS,
@@ -49,6 +46,9 @@ from ptp_symbolic.numeric.simulation.signals.inputs import (
     delays_of,
     stack,
 )
+
+if TYPE_CHECKING:
+    from ptp_symbolic.numeric.simulation.fixed_integration import FixedSolution
 
 FloatArray = NDArray[np.float64]
 
@@ -241,6 +241,8 @@ def simulate(
             )
             return found
         if chosen == FIXED_STEP:
+            from ptp_symbolic.numeric.simulation.fixed_integration import integrate_in_fixed_steps
+
             return integrate_in_fixed_steps(model, p, x, table, t, step, event_room)
         return integrate(
             model,
@@ -261,7 +263,7 @@ def simulate(
     if found.event_count > room and feedback is None:
         found = run(found.event_count)
     refuse_failure(model, p, found.status, found.reached, found.state)
-    if isinstance(found, FixedSolution):
+    if chosen == FIXED_STEP:
         _refuse_unbalanced(found, step)
     energies = found.ledger if ledger else np.zeros((0, 3))
     return Trajectory(
@@ -285,7 +287,7 @@ def _columns_of(model: Model, save: Sequence[str] | None) -> list[int]:
     return [model.state_names.index(name) for name in save]
 
 
-def _refuse_unbalanced(found: FixedSolution, step: float) -> None:
+def _refuse_unbalanced(found: Solution | FixedSolution, step: float) -> None:
     """Raise SimulationError where a run in fixed steps makes energy out of nothing.
 
     Implicit steps that are long beside a decay lose some, which only damps it more.
