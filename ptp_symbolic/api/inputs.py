@@ -19,6 +19,7 @@ from ptp_symbolic.numeric.simulation.signals.inputs import (
     parse_profile,
     table,
 )
+from ptp_symbolic.platform import interpolation_of
 from ptp_symbolic.platform.units import quantity
 
 FloatArray = NDArray[np.float64]
@@ -47,7 +48,10 @@ def input_signals(model: Model, given: Inputs | None, times: FloatArray) -> dict
         return {}
     if not isinstance(given, Mapping):
         time, columns = _columns(model, given)
-        return {name: table(time - time[0], values) for name, values in columns.items()}
+        return {
+            name: table(time - time[0], values, _between(model, name))
+            for name, values in columns.items()
+        }
     for name in given:
         if name not in model.input_names:
             raise unknown("input", name, model.input_names)
@@ -59,9 +63,11 @@ def input_signal(model: Model, name: str, given: Input, times: FloatArray) -> In
 
     `given` is a number in SI, a text ("3 V", or a profile such as "step:24@0.5"), a function of
     the time in s, samples [k] at `times`, a pair (times, samples), or a log or a DataFrame with a
-    column of that name; samples hold until the next (zero-order hold). Raises InputError for
-    anything else.
+    column of that name. Samples hold until the next (zero-order hold); those of rates and
+    accelerations, and of signals that say so, are joined by lines. Raises InputError for anything
+    else.
     """
+    between = _between(model, name)
     what, unit = f"Input '{name}'", model.units[name]
     start, end = float(times[0]), float(times[-1])
     if isinstance(given, InputSignal):
@@ -75,7 +81,7 @@ def input_signal(model: Model, name: str, given: Input, times: FloatArray) -> In
         time, columns = _columns(model, given)
         if name not in columns:
             raise InputError(f"{what}: the table has {', '.join(columns)}, and no such column.")
-        return table(time - time[0], columns[name])
+        return table(time - time[0], columns[name], between)
     if isinstance(given, str):
         return constant(quantity(given, unit, what))
     if callable(given):
@@ -84,7 +90,7 @@ def input_signal(model: Model, name: str, given: Input, times: FloatArray) -> In
         except InputError as error:
             raise InputError(f"{what}: {error}") from error
     if isinstance(given, tuple) and len(given) == 2 and np.ndim(given[0]) == 1:
-        return table(_numbers(given[0], what), _numbers(given[1], what))
+        return table(_numbers(given[0], what), _numbers(given[1], what), between)
     samples = _numbers(given, what)
     if samples.ndim == 0:
         return constant(quantity(float(samples), unit, what))
@@ -93,7 +99,14 @@ def input_signal(model: Model, name: str, given: Input, times: FloatArray) -> In
             f"{what} has shape {samples.shape}, and there are {len(times)} output times; give as"
             " many samples, or a pair (times, samples)."
         )
-    return table(times, samples)
+    return table(times, samples, between)
+
+
+def _between(model: Model, name: str) -> str:
+    """What samples of the input `name` are joined by: as its signal says, or as its unit does."""
+    signals = () if model.platform is None else model.platform.signals
+    declared = (s.between_samples for s in signals if s.role == "input" and s.signal == name)
+    return next(declared, interpolation_of(model.units[name]))
 
 
 def _numbers(given: object, what: str) -> FloatArray:

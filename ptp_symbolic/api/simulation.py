@@ -53,8 +53,9 @@ def simulate(
     `model` is what `load` takes. Inputs and parameters follow by name, or as `inputs` and
     `parameters`. An input is a number, a text ("3 V", "step:24@0.5"), a function of the time in s,
     samples [k] at the output times, a pair (times, samples), a log, its path, or a DataFrame;
-    samples hold until the next, what is not given is zero. Parameters and the state at the start
-    `x0` (or `initial`) are numbers in SI or texts such as "30 deg", by name or in order.
+    samples hold until the next, those of rates and accelerations are joined by lines; what is not
+    given is zero. Parameters and the state at the start `x0` (or `initial`) are numbers in SI or
+    texts such as "30 deg", by name or in order.
 
     `controller(t, y)` is called every `period` s and returns the inputs [nu], one number where
     there is one input, or a mapping by name, which hold until the next call and add to those given;

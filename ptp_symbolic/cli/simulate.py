@@ -177,9 +177,9 @@ def given_signals(
     for text in inputs:
         if text.lower().endswith(".csv"):
             time, values = read_inputs(Path(text), platform)
-            names = [s.signal for s in platform.signals if s.role == "input"]
-            for name, column in zip(names, values.T, strict=True):
-                signals[name] = table(time - time[0], column, "hold")
+            driving = [s for s in platform.signals if s.role == "input"]
+            for signal, column in zip(driving, values.T, strict=True):
+                signals[signal.signal] = table(time - time[0], column, signal.between_samples)
             end = float(time[-1] - time[0]) if duration is None else duration
             continue
         name, equals, profile = text.partition("=")

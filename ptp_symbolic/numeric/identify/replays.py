@@ -134,8 +134,8 @@ def replayed(
     tolerance: Tolerance = DEFAULT_TOLERANCE,
 ) -> tuple[FloatArray, FloatArray]:
     """Changes [k * ny, times] of the weighted residuals by input noise, each from another draw, and
-    the Jacobian by the start of the run; nan where it cannot be simulated. Inputs are held from
-    sample to sample, whatever the log has in between.
+    the Jacobian by the start of the run; nan where it cannot be simulated. Inputs change at samples
+    alone, whatever the log has in between.
     """
     none = np.zeros(0, dtype=np.int64)
     plain = evaluate(model, with_inputs(run, run.held_inputs), p, z, none, True, tolerance)

@@ -156,7 +156,9 @@ class Run:
     `source` is the name of the log that it is of, its own `name` that or one for the window alone.
     `outputs` [ny] gives the model output of every measured column, `counts` [ny] the size of one
     encoder count in rad or m (nan for analog signals); `start` [n] guesses the state at the first
-    sample. In a window, `before` [nu] is what the inputs were until then.
+    sample. `held_inputs` are the inputs at the samples, and `interpolations` [nu] tell what they
+    are from one to the next: "hold" or "linear" (empty: all are held). In a window, `before` [nu]
+    is what the inputs were until then.
     `work` counts what is simulated of it and of its windows.
     """
 
@@ -173,12 +175,17 @@ class Run:
     start: FloatArray
     unknowns: tuple[StartUnknown, ...]
     before: FloatArray | None = None
+    interpolations: tuple[str, ...] = ()
     work: Work = field(default_factory=Work)
 
     @property
     def evidence_parts(self) -> tuple[Any, ...]:
         """All that a simulation of it depends on, and what it is compared with."""
         return tuple(getattr(self, f.name) for f in fields(self) if f.name != "work")
+
+    def interpolation(self, column: int) -> str:
+        """What the input of that `column` is between its samples."""
+        return self.interpolations[column] if self.interpolations else "hold"
 
     @cached_property
     def stops(self) -> FloatArray:
@@ -332,9 +339,10 @@ def _unknown(
 
 
 def with_inputs(run: Run, values: NDArray[np.float64]) -> Run:
-    """`run` with the inputs `values` [k, nu], zero-order hold from sample to sample."""
+    """`run` with the inputs `values` [k, nu] at its samples."""
     held = np.ascontiguousarray(values)
-    return replace(run, inputs=stack([table(run.time, c) for c in held.T]), held_inputs=held)
+    signals = [table(run.time, c, run.interpolation(k)) for k, c in enumerate(held.T)]
+    return replace(run, inputs=stack(signals), held_inputs=held)
 
 
 def by_source(runs: Sequence[Run]) -> list[list[int]]:

@@ -34,7 +34,7 @@ from ptp_symbolic.numeric.identify.replays import input_noise, propagated_noise,
 from ptp_symbolic.numeric.identify.run import WINDOW, Around, Run, with_start
 from ptp_symbolic.numeric.identify.sample_averages import thinned
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import part_of_held
+from ptp_symbolic.numeric.simulation.signals.inputs import part_of_sampled
 
 FloatArray = NDArray[np.float64]
 
@@ -218,7 +218,7 @@ def piece_of(run: Run, part: slice, number: int) -> Run:
         run,
         name=f"{run.name}{WINDOW}{number}",
         time=time,
-        inputs=part_of_held(run.inputs, time[0], time[-1]),
+        inputs=part_of_sampled(run.inputs, time[0], time[-1]),
         held_inputs=np.ascontiguousarray(run.held_inputs[part]),
         measured=np.ascontiguousarray(run.measured[part]),
     )

@@ -192,9 +192,9 @@ def multisine(
 def table(times: ArrayLike, values: ArrayLike, interpolation: str = "hold") -> InputSignal:
     """Samples `values` [n] at `times` [n] in s, constant outside.
 
-    interpolation: "hold" is the zero-order hold (columns of a log), "linear" joins the samples,
-    "cubic" is the twice differentiable spline (not-a-knot). Raises InputError for another one, for
-    shapes that differ, too few samples, and times that do not increase.
+    interpolation: "hold" is the zero-order hold (what is commanded), "linear" joins the samples
+    (what is measured), "cubic" is the twice differentiable spline (not-a-knot). Raises InputError
+    for another one, for shapes that differ, too few samples, and times that do not increase.
     """
     at, value = np.asarray(times, dtype=np.float64), np.asarray(values, dtype=np.float64)
     least = 1 if interpolation == "hold" else 2
@@ -333,21 +333,24 @@ def _stacked(signals: tuple[InputSignal, ...]) -> InputTable:
     )
 
 
-def held_values(whole: InputTable) -> list[tuple[FloatArray, FloatArray]]:
-    """Times [m] in s and values [m] of every zero-order hold of `whole`."""
+def sampled_signals(whole: InputTable) -> list[InputSignal]:
+    """The signals of a `whole` that is stacked of samples, without sines and sweeps."""
     return [
-        (whole.breaks[first + j : last + j], whole.coefficients[first:last, 0])
+        InputSignal(whole.breaks[first + j : last + j + 1], whole.coefficients[first:last])
         for j, (first, last) in enumerate(pairwise(whole.offsets))
     ]
 
 
-def part_of_held(whole: InputTable, begin: float, end: float) -> InputTable:
-    """The zero-order holds of `whole` from `begin` to `end` in s; before it what holds then."""
+def part_of_sampled(whole: InputTable, begin: float, end: float) -> InputTable:
+    """The pieces of the sampled signals of `whole` from `begin` to `end` in s; before the first of
+    them, and after the last, a signal is constant.
+    """
     signals = []
-    for times, values in held_values(whole):
+    for signal in sampled_signals(whole):
+        times = signal.breaks[:-1]
         a = max(0, int(np.searchsorted(times, begin, side="right")) - 1)
         b = max(a + 1, int(np.searchsorted(times, end, side="right")))
-        signals.append(table(times[a:b], values[a:b], "hold"))
+        signals.append(InputSignal(signal.breaks[a : b + 1], signal.coefficients[a:b]))
     return stack(signals)
 
 
