@@ -18,7 +18,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ptp_symbolic.errors import InputError, unknown
+from ptp_symbolic.errors import InputError, unknown, wrong_type
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.input_values import (
     evaluate_input_slopes,
@@ -235,11 +235,15 @@ def function(of_time: Callable[[float], float], t0: float, t1: float) -> InputSi
     """
 
     def value(t: float) -> float:
-        found = np.asarray(of_time(t), dtype=np.float64)
+        returned = of_time(t)
+        try:
+            found = np.asarray(returned, dtype=np.float64)
+        except (TypeError, ValueError):
+            found = np.zeros(0)
         if found.size != 1 or not np.isfinite(found).all():
             raise InputError(
-                f"The input function returns {found.tolist()!r} at {t:g} s; it must return one"
-                " finite number."
+                f"The input function returns {returned!r} at {t:g} s; it must return one finite"
+                " number."
             )
         return float(found.reshape(()) if found.ndim == 0 else found.reshape(-1)[0])
 
@@ -436,9 +440,11 @@ def as_signals(
             except InputError as error:
                 raise InputError(f"Input '{name}': {error}") from error
         if not isinstance(signal, InputSignal):
-            raise InputError(
-                f"Input '{name}' is of type {type(signal).__name__}; give a profile such as"
-                " 'constant:3', or a signal of ptp_symbolic.numeric.simulation.signals.inputs."
+            raise wrong_type(
+                f"Input '{name}'",
+                signal,
+                "a profile such as 'constant:3', or a signal of"
+                " ptp_symbolic.numeric.simulation.signals.inputs",
             )
         signals[name] = signal
     return signals
