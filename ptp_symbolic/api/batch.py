@@ -17,7 +17,7 @@ from ptp_symbolic.api.machine import Machine, Source, load, machine_of
 from ptp_symbolic.api.reductions import SETTLING, Reduction, is_reduction, reductions
 from ptp_symbolic.api.simulation import STATES
 from ptp_symbolic.api.values import parameter_values, state_vector
-from ptp_symbolic.errors import InputError, unknown
+from ptp_symbolic.errors import InputError, unknown, wrong_type
 from ptp_symbolic.numeric.simulation import lanes
 from ptp_symbolic.numeric.simulation.integration import METHODS, checked_accuracy
 from ptp_symbolic.numeric.simulation.lanes import (
@@ -97,8 +97,11 @@ def simulate_batch(
         raise InputError("`x0` and `initial` are both the state at the start; give one of them.")
     t = output_times(times)
     given, drives = _drives(machine, inputs, values, t)
+    start: Columns = ({} if initial is None else initial) if x0 is None else x0
+    for what, part in (("`parameters`", parameters or {}), ("Initial states", start)):
+        if not isinstance(part, Mapping):
+            raise wrong_type(what, part, "a value or an array [n] by name")
     columns = {**(parameters or {}), **given}
-    start = (initial if x0 is None else x0) or {}
     count = _count(columns, start, seeds, drives)
     wanted = _Wanted.of(machine, outputs, noise or {}, t, tuple(dict.fromkeys(sensitivities)))
     wanted.refuse_too_large(count, len(t))

@@ -17,7 +17,7 @@ from numba.extending import is_jitted
 
 from ptp_symbolic.api.effect_bases import carriage_with, machine_with, machine_without
 from ptp_symbolic.api.units_by_trial import refuse_misfit
-from ptp_symbolic.errors import InputError
+from ptp_symbolic.errors import InputError, wrong_type
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform
@@ -324,7 +324,7 @@ def check_effect(effect: Effect, platform: Platform | None = None) -> tuple[str,
     8
     """
     if not isinstance(effect, Effect):
-        raise InputError(f"{effect!r} is of type {type(effect).__name__}; give an Effect.")
+        raise wrong_type(repr(effect), effect, "an Effect")
     with on_trial(effect):
         case = Case(effect, machine_with(effect) if platform is None else platform)
         for law in LAWS:

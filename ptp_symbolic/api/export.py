@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from ptp_symbolic.api.machine import Source, platform_of
+from ptp_symbolic.errors import path_of
 
 
 def export(source: Source, target: str, folder: str | Path) -> list[Path]:
@@ -22,4 +23,5 @@ def export(source: Source, target: str, folder: str | Path) -> list[Path]:
     """
     from ptp_symbolic.models.export import export as written
 
-    return written(platform_of(source), target, Path(folder))[0]
+    place = path_of(folder, "`folder`", "the path of a folder")
+    return written(platform_of(source), target, place)[0]

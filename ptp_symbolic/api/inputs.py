@@ -1,5 +1,6 @@
 """Inputs as a program gives them: numbers, texts, functions, samples, tables and logs."""
 
+import inspect
 import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -8,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ptp_symbolic.errors import InputError, unknown
+from ptp_symbolic.errors import InputError, unknown, wrong_type
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.inputs import (
     PROFILES,
@@ -18,6 +19,7 @@ from ptp_symbolic.numeric.simulation.signals.inputs import (
     parse_profile,
     table,
 )
+from ptp_symbolic.platform import interpolation_of
 from ptp_symbolic.platform.units import quantity
 
 FloatArray = NDArray[np.float64]
@@ -46,7 +48,10 @@ def input_signals(model: Model, given: Inputs | None, times: FloatArray) -> dict
         return {}
     if not isinstance(given, Mapping):
         time, columns = _columns(model, given)
-        return {name: table(time - time[0], values) for name, values in columns.items()}
+        return {
+            name: table(time - time[0], values, _between(model, name))
+            for name, values in columns.items()
+        }
     for name in given:
         if name not in model.input_names:
             raise unknown("input", name, model.input_names)
@@ -58,9 +63,11 @@ def input_signal(model: Model, name: str, given: Input, times: FloatArray) -> In
 
     `given` is a number in SI, a text ("3 V", or a profile such as "step:24@0.5"), a function of
     the time in s, samples [k] at `times`, a pair (times, samples), or a log or a DataFrame with a
-    column of that name; samples hold until the next (zero-order hold). Raises InputError for
-    anything else.
+    column of that name. Samples hold until the next (zero-order hold); those of rates and
+    accelerations, and of signals that say so, are joined by lines. Raises InputError for anything
+    else.
     """
+    between = _between(model, name)
     what, unit = f"Input '{name}'", model.units[name]
     start, end = float(times[0]), float(times[-1])
     if isinstance(given, InputSignal):
@@ -74,16 +81,17 @@ def input_signal(model: Model, name: str, given: Input, times: FloatArray) -> In
         time, columns = _columns(model, given)
         if name not in columns:
             raise InputError(f"{what}: the table has {', '.join(columns)}, and no such column.")
-        return table(time - time[0], columns[name])
+        return table(time - time[0], columns[name], between)
     if isinstance(given, str):
         return constant(quantity(given, unit, what))
     if callable(given):
+        refuse_other_arguments(given, f"{what}: the function", "one argument, the time in s", 1)
         try:
             return function(given, start, end)
         except InputError as error:
             raise InputError(f"{what}: {error}") from error
     if isinstance(given, tuple) and len(given) == 2 and np.ndim(given[0]) == 1:
-        return table(_numbers(given[0], what), _numbers(given[1], what))
+        return _samples(what, _numbers(given[0], what), _numbers(given[1], what), between)
     samples = _numbers(given, what)
     if samples.ndim == 0:
         return constant(quantity(float(samples), unit, what))
@@ -92,17 +100,44 @@ def input_signal(model: Model, name: str, given: Input, times: FloatArray) -> In
             f"{what} has shape {samples.shape}, and there are {len(times)} output times; give as"
             " many samples, or a pair (times, samples)."
         )
-    return table(times, samples)
+    return _samples(what, times, samples, between)
+
+
+def _samples(what: str, times: FloatArray, values: FloatArray, between: str) -> InputSignal:
+    try:
+        return table(times, values, between)
+    except InputError as error:
+        raise InputError(f"{what}: {error}") from error
+
+
+def refuse_other_arguments(given: Callable[..., Any], what: str, wanted: str, count: int) -> None:
+    """Raise InputError where a function that is `given` cannot be called with `count` arguments,
+    `wanted` in words.
+    """
+    try:
+        inspect.signature(given).bind(*[0.0] * count)
+    except TypeError as error:
+        raise InputError(f"{what} must take {wanted}, but: {error}; change it.") from error
+    except ValueError:  # of a function in C, which does not tell
+        return
+
+
+def _between(model: Model, name: str) -> str:
+    """What samples of the input `name` are joined by: as its signal says, or as its unit does."""
+    signals = () if model.platform is None else model.platform.signals
+    declared = (s.between_samples for s in signals if s.role == "input" and s.signal == name)
+    return next(declared, interpolation_of(model.units[name]))
 
 
 def _numbers(given: object, what: str) -> FloatArray:
     try:
-        return np.asarray(given, dtype=np.float64)
+        return np.asarray(float if given is None else given, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise InputError(
-            f"{what} is of type {type(given).__name__}; give a number, a text such as '3 V' or"
-            " 'step:24@0.5', a function of time, samples, a pair (times, samples), a log or a"
-            " DataFrame."
+        raise wrong_type(
+            what,
+            given,
+            "a number, a text such as '3 V' or 'step:24@0.5', a function of time, samples, a pair"
+            " (times, samples), a log or a DataFrame",
         ) from error
 
 
@@ -129,10 +164,7 @@ def _columns(model: Model, given: Any) -> tuple[FloatArray, dict[str, FloatArray
         return _columns_of_frame(model, given)
     platform = model.platform
     if not (isinstance(given, str | Path) or _is_log(given)):
-        raise InputError(
-            f"Inputs of type {type(given).__name__}; give them by name, or as a log, its path or a"
-            " DataFrame."
-        )
+        raise wrong_type("`inputs`", given, "inputs by name, or a log, its path or a DataFrame")
     if platform is None:
         raise InputError("The model does not know its platform, which names the columns of a log.")
     names = [s.signal for s in platform.signals if s.role == "input"]

@@ -1,6 +1,6 @@
 """A measured log as an object: signals by name, a table and a plot."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
 from pathlib import Path
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ptp_symbolic.api.display import Displayed, Table
 from ptp_symbolic.api.extras import extra_library
 from ptp_symbolic.api.machine import Source, platform_of
-from ptp_symbolic.errors import unknown
+from ptp_symbolic.errors import path_of, unknown, wrong_type
 from ptp_symbolic.numeric import data
 from ptp_symbolic.platform import SignalDeclaration
 
@@ -103,16 +103,21 @@ def read_log(path: Path | str, platform: Source) -> Log:
     >>> log.time.shape == log["theta_pan"].shape
     True
     """
-    declared = platform_of(platform)
-    found = data.read_log(path, declared)
-    return Log(**vars(found), signals=declared.signals, path=Path(path))
+    place, declared = path_of(path, "A log", "the path of a file"), platform_of(platform)
+    found = data.read_log(place, declared)
+    return Log(**vars(found), signals=declared.signals, path=place)
 
 
 def log_paths(logs: Any) -> list[Path | str]:
-    """The files or folders of `logs`: one or several paths or logs that were read."""
-    if isinstance(logs, str | Path | Log):
-        logs = [logs]
-    return [log.path if isinstance(log, Log) else log for log in logs]
+    """The files or folders of `logs`: one or several paths or logs that were read.
+
+    Raises InputError for what is neither.
+    """
+    wanted = "the path of a file or a folder, a log of `read_log`, or several of them"
+    several = [logs] if isinstance(logs, str | Path | Log) else logs
+    if not isinstance(several, Iterable):
+        raise wrong_type("A log", logs, wanted)
+    return [log.path if isinstance(log, Log) else path_of(log, "A log", wanted) for log in several]
 
 
 def sample(name: str) -> Path:

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from ptp_symbolic.api.display import Displayed, Table
 from ptp_symbolic.api.linearization import Linearization
 from ptp_symbolic.api.values import Values, input_vector, parameter_vector, state_vector
-from ptp_symbolic.errors import InputError, unknown
+from ptp_symbolic.errors import InputError, unknown, wrong_type
 from ptp_symbolic.numeric.runtime.loader import load_model, load_module, model_names
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform, effect_key
@@ -164,10 +164,11 @@ class Machine(Displayed, Model):
         array([0., 0.])
         """
         from ptp_symbolic.api.values import parameter_values
-        from ptp_symbolic.models.inverse_dynamics import Motion, inverse_dynamics
+        from ptp_symbolic.models.inverse_dynamics import Motion, inverse_dynamics, numbers_of
 
-        rows = [np.atleast_2d(np.asarray(row, dtype=np.float64)) for row in (q, w, a)]
-        times = None if t is None else np.atleast_1d(np.asarray(t, dtype=np.float64))
+        given = {"angles": q, "rates": w, "accelerations": a}
+        rows = [np.atleast_2d(numbers_of(row, name)) for name, row in given.items()]
+        times = None if t is None else np.atleast_1d(numbers_of(t, "times"))
         found = inverse_dynamics(
             self, Motion(rows[0], rows[1], rows[2], times), parameter_values(self, p)
         )
@@ -323,11 +324,7 @@ def load(source: Source, *, catalogue_values: bool = False) -> Machine:
     """
     if isinstance(source, Model):
         return machine_of(source)
-    if not isinstance(source, str | Path | Platform):
-        raise InputError(
-            f"A machine of type {type(source).__name__}; give the name of a model or a preset, the"
-            " path of a platform file, a Platform or a Machine."
-        )
+    _refuse_no_machine(source)
     if not isinstance(source, Platform) and str(source) in model_names():
         return machine_of(load_model(str(source)))
     if not (isinstance(source, Platform) and catalogue_values):
@@ -348,11 +345,21 @@ def platform_of(source: Source) -> Platform:
         return source
     if isinstance(source, Model):
         return machine_of(source)._known_platform()
+    _refuse_no_machine(source)
     if str(source) in model_names():
         return machine_of(load_model(str(source)))._known_platform()
     from ptp_symbolic.models.committed import declared_platform
 
     return declared_platform(source)
+
+
+def _refuse_no_machine(source: object) -> None:
+    if not isinstance(source, str | Path | Platform):
+        raise wrong_type(
+            "A machine",
+            source,
+            "the name of a model or a preset, the path of a platform file, a Platform or a Machine",
+        )
 
 
 def _restored(

@@ -10,7 +10,7 @@ from ptp_symbolic.api.display import Displayed, Table
 from ptp_symbolic.api.logs import Log, log_paths
 from ptp_symbolic.api.machine import Machine, Source, load, platform_of
 from ptp_symbolic.atomic_files import check_writable, write_files_atomically
-from ptp_symbolic.errors import InputError, unknown
+from ptp_symbolic.errors import InputError, names_of, number_of, path_of, unknown
 from ptp_symbolic.platform import Platform
 
 if TYPE_CHECKING:
@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 Logs = str | Path | Log | Iterable[str | Path | Log]
 Progress = Callable[[str], None]
+
+
+FOLDER = "the path of a folder"
 
 
 def _silent(text: str) -> None:
@@ -58,9 +61,10 @@ class _Result(Displayed):
 
         Raises InputError for a folder that cannot be written.
         """
-        check_writable(Path(folder))
-        write_files_atomically(Path(folder), self.output.files)
-        return Path(folder)
+        place = path_of(folder, "`folder`", FOLDER)
+        check_writable(place)
+        write_files_atomically(place, self.output.files)
+        return place
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -167,7 +171,7 @@ class Diagnosis(_Result):
 
         Raises InputError for a folder that cannot be written.
         """
-        place = Path(path)
+        place = path_of(path, "`path`", "the path of an HTML file")
         check_writable(place.parent)
         write_files_atomically(place.parent, {place.name: self.output.files["report.html"]})
         return place
@@ -295,10 +299,10 @@ def diagnose(
             log_paths(validate),
             progress,
             rivals=black_box,
-            time_limit=time_limit,
-            effort=effort,
-            resume=None if resume is None else Path(resume),
-            keep=None if keep is None else Path(keep),
+            time_limit=None if time_limit is None else number_of(time_limit, "`time_limit`", "s"),
+            effort=number_of(effort, "`effort`"),
+            resume=None if resume is None else path_of(resume, "`resume`", FOLDER),
+            keep=None if keep is None else path_of(keep, "`keep`", FOLDER),
         )
     )
 
@@ -335,6 +339,8 @@ def experiment(
     from ptp_symbolic.workflows.experiment_group import group_of
 
     declared = platform_of(platform)
+    between = names_of(between, "`between`")
+    parameters = names_of(parameters, "`parameters`")
     known: Mapping[str, float] = {}
     if diagnosis is not None:
         group, known = group_of(_saved(diagnosis), declared)
@@ -344,9 +350,9 @@ def experiment(
                 " experiment is for."
             )
         between = between or (() if parameters else group)
-    texts = limits
     if isinstance(limits, Mapping):
-        texts = [f"{name}={limit}" for name, limit in limits.items()]
+        limits = [f"{name}={limit}" for name, limit in limits.items()]
+    texts = names_of(limits, "`limits`")
     states: dict[str, float] = {}
     if initial:
         machine = load(declared)
@@ -354,14 +360,14 @@ def experiment(
         states = {n: float(vector[machine.state_names.index(n)]) for n in initial}
     request = Request(
         tuple(between),
-        tuple(parameters),
-        tuple(texts),
-        duration,
-        period,
+        parameters,
+        texts,
+        number_of(duration, "`duration`", "s"),
+        None if period is None else number_of(period, "`period`", "s"),
         states,
         known,
-        tries,
-        seed,
+        int(number_of(tries, "`tries`")),
+        int(number_of(seed, "`seed`")),
     )
     return Experiment(design_experiment(declared, request, log_paths(logs), progress))
 
@@ -397,12 +403,17 @@ def friction_map(
     from ptp_symbolic.report.friction_map import friction_map_picture
     from ptp_symbolic.workflows.result import Output
 
-    if not 0.5 <= confidence < 1.0:
+    if not 0.5 <= number_of(confidence, "`confidence`") < 1.0:
         raise InputError(f"`confidence` {confidence:g}: give at least 0.5 and less than 1.")
     if axis not in AXES:
         raise unknown("axis", axis, AXES)
     summary = fit_map(
-        read_points(Path(points), Columns(rate, torque, spread, nominal)), axis, confidence
+        read_points(
+            path_of(points, "`points`", "the path of a CSV file"),
+            Columns(rate, torque, spread, nominal),
+        ),
+        axis,
+        confidence,
     )
     files: dict[str, str | bytes] = {
         "friction.toml": platform_fragment(summary),
@@ -450,4 +461,6 @@ def _plot(output: "Output", hidden: Sequence[str] = ()) -> "Figure":
 
 
 def _saved(diagnosis: Diagnosis | Path | str) -> Any:
-    return diagnosis.summary if isinstance(diagnosis, Diagnosis) else Path(diagnosis)
+    if isinstance(diagnosis, Diagnosis):
+        return diagnosis.summary
+    return path_of(diagnosis, "`diagnosis`", "a Diagnosis, or the folder of one")

@@ -9,11 +9,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ptp_symbolic.api.inputs import Input, Inputs, input_signals, whole_duration
+from ptp_symbolic.api.inputs import (
+    Input,
+    Inputs,
+    input_signals,
+    refuse_other_arguments,
+    whole_duration,
+)
 from ptp_symbolic.api.machine import Machine, Source, load
 from ptp_symbolic.api.run import Run
 from ptp_symbolic.api.values import Quantity, Values, parameter_values, state_vector
-from ptp_symbolic.errors import InputError, unknown
+from ptp_symbolic.errors import InputError, names_of, number_of, unknown, wrong_type
 from ptp_symbolic.numeric.simulation import run as numeric
 from ptp_symbolic.numeric.simulation.feedback import Feedback
 from ptp_symbolic.numeric.simulation.integration import MOST_STEPS
@@ -55,8 +61,9 @@ def simulate(
     `model` is what `load` takes. Inputs and parameters follow by name, or as `inputs` and
     `parameters`. An input is a number, a text ("3 V", "step:24@0.5"), a function of the time in s,
     samples [k] at the output times, a pair (times, samples), a log, its path, or a DataFrame;
-    samples hold until the next, what is not given is zero. Parameters and the state at the start
-    `x0` (or `initial`) are numbers in SI or texts such as "30 deg", by name or in order.
+    samples hold until the next, those of rates and accelerations are joined by lines; what is not
+    given is zero. Parameters and the state at the start `x0` (or `initial`) are numbers in SI or
+    texts such as "30 deg", by name or in order.
 
     `controller(t, y)` is called every `period` s and returns the inputs [nu], one number where
     there is one input, or a mapping by name, which hold until the next call and add to those given;
@@ -98,10 +105,10 @@ def simulate(
         atol,
         largest_step,
         method,
-        step,
+        number_of(step, "`step`", "s"),
         ledger,
-        save,
-        most_steps,
+        None if save is None else names_of(save, "`save`"),
+        int(number_of(most_steps, "`most_steps`")),
         _feedback(machine, controller, period, feedback),
     )
     p = machine.parameter_vector(changed)
@@ -110,7 +117,7 @@ def simulate(
 
 def sensitivity(
     model: Source,
-    times: float | ArrayLike | None,
+    times: float | ArrayLike | None = None,
     inputs: Inputs | None = None,
     parameters: Values | None = None,
     initial: Values | None = None,
@@ -149,8 +156,8 @@ def sensitivity(
         _joined(machine, inputs, by_name, span),
         {**parameter_values(machine, parameters), **own},
         dict(zip(machine.state_names, map(float, start), strict=True)),
-        by_parameters,
-        by_initial,
+        None if by_parameters is None else names_of(by_parameters, "`by_parameters`"),
+        names_of(by_initial, "`by_initial`"),
         rtol,
         atol,
         largest_step,
@@ -199,13 +206,10 @@ def _feedback(
     if period is None:
         raise InputError("A `controller` is sampled; give its `period` in s, such as 1e-3.")
     if not callable(controller):
-        raise InputError(
-            f"The controller is of type {type(controller).__name__}; give a function of t and y."
-        )
+        raise wrong_type("The controller", controller, "a function of t and y")
+    refuse_other_arguments(controller, "The controller", "t in s and what is measured", 2)
     if names is None:
         measured: tuple[str, ...] | None = machine.output_names
-    elif isinstance(names, str):
-        measured = None if names == STATES else (names,)
     else:
-        measured = tuple(names)
-    return Feedback(controller, period, measured)
+        measured = None if names == STATES else names_of(names, "`feedback`")
+    return Feedback(controller, number_of(period, "`period`", "s"), measured)

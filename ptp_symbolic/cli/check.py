@@ -1,4 +1,4 @@
-"""`ptp-symbolic check`: the contents of logs, and what they can show, before anything is fitted."""
+"""`ptp-symbolic check`: what a platform declares; what logs hold and can show, before a fit."""
 
 import json
 from collections.abc import Mapping
@@ -8,7 +8,9 @@ from typing import Any
 import click
 
 from ptp_symbolic.cli.declared import note_defaults
+from ptp_symbolic.cli.lists import print_table
 from ptp_symbolic.cli.progress import progress_line
+from ptp_symbolic.errors import InputError
 
 COLUMNS = (
     "  signal",
@@ -21,23 +23,34 @@ COLUMNS = (
     "at rest",
     "fastest",
 )
+LEGEND = (
+    "noise: its white part, rms. step: between neighbouring levels. at ends: share of the samples"
+    " at the lowest or highest value. at rest: share of the time at standstill. fastest: largest"
+    " change per s over a tenth of a second."
+)
 EVEN = 1e-4  # of a period, rms: less is rounding of the time column
 
 
 @click.command()
 @click.option("--platform", "source", required=True, help="Platform TOML or packaged name.")
-@click.argument("logs", nargs=-1, required=True)
+@click.argument("logs", nargs=-1)
 @click.option("--out", type=Path, help="Folder for check.html and check.json.")
 @click.option("--json", "as_json", is_flag=True, help="Print check.json instead of tables.")
 def check(source: str, logs: tuple[str, ...], out: Path | None, as_json: bool) -> None:
-    """Print the contents of logs, and the smallest parameter change and effect they can show.
+    """Print what LOGS hold, and the smallest parameter change and effect that they can show.
 
-    The amounts are predicted by the declared model at its start values, for white noise.
+    The amounts are predicted by the declared model at its start values, for white noise. Without
+    LOGS, print what the platform declares: states, inputs, outputs, parameters, what is missing.
     """
     from ptp_symbolic.atomic_files import check_writable, write_files_atomically
     from ptp_symbolic.models.committed import declared_platform
     from ptp_symbolic.workflows.log_check import check_logs
 
+    if not logs:
+        if out is not None:
+            raise InputError("`out` is for what logs show; name logs, or leave it out.")
+        _check_platform(source, as_json)
+        return
     platform = declared_platform(source)
     if out is not None:
         check_writable(out)
@@ -55,8 +68,60 @@ def check(source: str, logs: tuple[str, ...], out: Path | None, as_json: bool) -
         click.echo(f"Page: {out / 'check.html'}")
 
 
+def _check_platform(source: str, as_json: bool) -> None:
+    """Print a platform without logs; what is missing is refused after that."""
+    from ptp_symbolic.models.committed import platform_as_written
+    from ptp_symbolic.workflows.log_check import check_platform, refuse_incomplete
+
+    platform = platform_as_written(source)
+    with progress_line() as say:
+        found = check_platform(platform, say)
+    if as_json:
+        click.echo(json.dumps(found, indent=2))
+    else:
+        _print_platform(found)
+    refuse_incomplete(platform)
+
+
+def _print_platform(found: Mapping[str, Any]) -> None:
+    about = found["platform"]
+    click.echo(f"{about['name']}: {about['title']}; axes {', '.join(about['axes'])}.")
+    click.echo(f"Effects: {', '.join(found['effects'])}.")
+    states = ", ".join(f"{s['name']} [{s['unit']}]" for s in found["states"])
+    click.echo(f"States: {states}.")
+    for role in ("inputs", "outputs"):
+        signals = ", ".join(
+            f"{s['name']} [{s['unit']}]" + (f" in column '{s['column']}'" if s["column"] else "")
+            for s in found[role]
+        )
+        what = "Inputs" if role == "inputs" else "What sensors may measure"
+        click.echo(f"{what}: {signals}.")
+    lacking = [s["name"] for s in found["inputs"] if not s["column"]]
+    if not any(s["column"] for s in found["outputs"]):
+        lacking.append("an output")
+    if lacking:
+        click.echo(f"To read logs, declare under [signals] too: {', '.join(lacking)}.")
+    click.echo()
+    print_table(
+        [
+            {
+                "parameter": p["name"],
+                "value": "" if p["value"] is None else f"{p['value']:g}",
+                "unit": p["unit"],
+                "declared": p["declared"],
+                "bounds": f"{p['bounds'][0]:g} to {p['bounds'][1]:g}",
+                "meaning": p["meaning"],
+            }
+            for p in found["parameters"]
+        ]
+    )
+    click.echo(
+        "known: declared by `value`; fitted: by `start`; default: natural, not declared; missing:"
+        " declare it."
+    )
+
+
 def _print_logs(summary: Mapping[str, Any]) -> None:
-    """Noise is the white part, rms; a step is that between levels; fastest is per second."""
     from rich.console import Console
     from rich.table import Table
 
@@ -78,10 +143,11 @@ def _print_logs(summary: Mapping[str, Any]) -> None:
         for signal in log["signals"]:
             signals.add_row(*_signal_cells(signal, summary["units"][signal["name"]]))
         Console().print(signals)
+    click.echo(LEGEND)
     same = summary["repeatability"]
-    if same is None:
-        click.echo("No two runs have the same inputs: its repeatability is not known.")
-    else:
+    if same is None and len(summary["logs"]) > 1:
+        click.echo("No two runs have the same inputs: how well a run repeats is not known.")
+    elif same is not None:
         pairs = ", ".join(" = ".join(pair) for pair in same["runs"])
         click.echo(f"Runs with the same inputs: {pairs}.")
 

@@ -54,6 +54,13 @@ def run(command: click.Command) -> None:
         code = command.main(standalone_mode=False)
     except click.exceptions.Exit as ended:
         sys.exit(ended.exit_code)
+    except click.exceptions.NoArgsIsHelpError as bare:
+        click.echo(bare.format_message(), err=True)
+        sys.exit(2)
+    except click.UsageError as wrong:
+        told = " ".join(wrong.format_message().split()).removesuffix(".")
+        asked = "" if wrong.ctx is None else f" See '{wrong.ctx.command_path} --help'."
+        _refuse(f"{told}{'' if told.endswith('?') else '.'}{asked}")
     except click.ClickException as wrong:
         _refuse(" ".join(wrong.format_message().split()))
     except InputError as wrong:

@@ -31,7 +31,9 @@ from ptp_symbolic.errors import InputError
 )
 @click.option("--duration", type=float, default=10.0, help="Seconds; default 10.")
 @click.option("--period", type=float, help="Seconds between samples; default that of the logs.")
-@click.option("--initial", multiple=True, help="State at the start in SI: STATE=VALUE.")
+@click.option(
+    "--initial", multiple=True, help="State at the start in SI, or with its unit: STATE=VALUE."
+)
 @click.option("--tries", type=int, default=240, help="Inputs to try; default 240.")
 @click.option("--seed", type=int, default=1, help="Of the search; default 1.")
 @click.option("--out", type=Path, required=True, help="Folder for the results.")

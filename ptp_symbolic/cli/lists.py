@@ -76,7 +76,9 @@ def _explain(name: str, as_json: bool) -> None:
         click.echo(f"  sits on {kind['sits_on']}; {searched}")
         click.echo(f"  reference: {kind['reference']}")
         for need in kind["needs"]:
-            click.echo(f"  needs {need['quantity']}, from {' or '.join(need['from'])}")
+            own = [source for source in need["from"] if " " not in source]
+            more = ": declare it too" if len(own) == 1 else ": declare one of them too" * bool(own)
+            click.echo(f"  needs {need['quantity']}, from {' or '.join(need['from'])}{more}")
         if kind["separating_experiment"]:
             click.echo(f"  to separate it: {kind['separating_experiment']}")
         if kind["parameters"]:
@@ -122,12 +124,16 @@ def described(kind: Any) -> dict[str, Any]:
 
 
 def _from_the_machine(need: str) -> list[str]:
-    """Where a quantity comes from that no effect defines: a signal, or the axis itself."""
+    """Where a quantity comes from that no effect defines: a signal, or the axis itself (see
+    `machine_quantities`).
+    """
     if need.startswith("reading_"):
         return [f"[signals.{need.removeprefix('reading_').format(axis='<axis>')}]"]
     if need.startswith(("input_torque_", "command_torque_")):
-        return ["the torque input of an axis without a motor"]
-    return ["the transmission of the axis"]
+        return ["any axis without a motor and without prescribed_motion"]
+    if need.startswith("transmitted_torque_"):
+        return ["any axis without prescribed_motion and without rigid backlash"]
+    return ["dc_motor", "linear_actuator", "shaft_compliance"]
 
 
 def _as_row(parameter: Mapping[str, Any]) -> dict[str, str]:

@@ -1,5 +1,6 @@
 """`ptp-symbolic simulate` and `sensitivity`: a platform and its inputs in, CSV files out."""
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -37,7 +38,8 @@ INITIAL = click.option(
     "--initial",
     multiple=True,
     metavar="STATE=VALUE",
-    help="State at the start in SI, such as theta_pan=0.3; repeat for several.",
+    help="State at the start in SI, such as theta_pan=0.3, or with its unit, such as"
+    " 'theta_pan=30 deg'; repeat for several.",
 )
 EVERY = click.option(
     "--every", type=float, default=1e-3, help="Seconds between outputs; default 0.001."
@@ -150,19 +152,31 @@ def sensitivity(
 
 
 def initial_states(model: Any, given: Sequence[str]) -> dict[str, float]:
-    """States in SI by name, of texts NAME=VALUE. Raises InputError for unknown names and values."""
+    """States in SI by name, of texts NAME=VALUE, the value with a unit if it is not in SI.
+
+    An angle of more than a turn is pointed out where it has no unit: a joint may have turned as
+    often, and degrees look the same. Raises InputError for unknown names and values.
+    """
+    from ptp_symbolic.platform.units import quantity
+
     values = {}
     for text in given:
         name, _, value = text.partition("=")
         if name not in model.state_names:
             raise unknown("state", name, model.state_names)
-        try:
-            values[name] = float(value)
-        except ValueError as error:
-            raise InputError(
-                f"Initial state '{text}': give {name}=VALUE, a number in {model.units[name]}."
-            ) from error
+        unit = model.units[name]
+        values[name] = quantity(value, unit, f"Initial state '{name}'")
+        if value.strip()[-1:].isdigit():
+            _note_turns(
+                f"{name} starts at", values[name], unit, f"write degrees as '{name}={value} deg'"
+            )
     return values
+
+
+def _note_turns(what: str, value: float, unit: str, advice: str) -> None:
+    turns = abs(value) / math.tau
+    if unit == "rad" and turns > 1.0:
+        click.echo(f"Note: {what} {value:g} rad, {turns:.3g} turns; {advice}.", err=True)
 
 
 def given_signals(
@@ -177,9 +191,9 @@ def given_signals(
     for text in inputs:
         if text.lower().endswith(".csv"):
             time, values = read_inputs(Path(text), platform)
-            names = [s.signal for s in platform.signals if s.role == "input"]
-            for name, column in zip(names, values.T, strict=True):
-                signals[name] = table(time - time[0], column, "hold")
+            driving = [s for s in platform.signals if s.role == "input"]
+            for signal, column in zip(driving, values.T, strict=True):
+                signals[signal.signal] = table(time - time[0], column, signal.between_samples)
             end = float(time[-1] - time[0]) if duration is None else duration
             continue
         name, equals, profile = text.partition("=")
@@ -191,4 +205,10 @@ def given_signals(
                 )
             name, profile = model.input_names[0], text
         signals[name] = profile
-    return dict(as_signals(model.input_names, signals, end)), end
+    found = dict(as_signals(model.input_names, signals, end))
+    for name in found.keys() & {n for n, given in signals.items() if isinstance(given, str)}:
+        farthest = max(found[name].coefficients[:, 0].tolist(), key=abs)
+        _note_turns(
+            f"{name} goes to", farthest, model.units[name], "a profile is in rad, not in deg"
+        )
+    return found, end

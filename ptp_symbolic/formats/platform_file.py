@@ -17,7 +17,7 @@ from ptp_symbolic.formats.json_schema import (
     record,
     said,
 )
-from ptp_symbolic.platform import AXES, JOINTS, SITES, STANDARD_GRAVITY
+from ptp_symbolic.platform import AXES, INTERPOLATIONS, JOINTS, SITES, STANDARD_GRAVITY
 from ptp_symbolic.symbolic.derivation.placement import GRAVITY
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
@@ -193,6 +193,11 @@ def _signals() -> Schema:
         "offset": said(NUMBER, "Taken off: numbers of the column with a scale, else in `unit`."),
         "delay": said(TIME, "An output stamped t was measured this much earlier."),
         "column_unit": said(TEXT, "Unit of a column whose heading has none."),
+        "interpolation": one_of(
+            INTERPOLATIONS,
+            "What an input is between its samples; linear for rates and accelerations, hold for"
+            " other inputs unless given.",
+        ),
     }
     optional = tuple(name for name in entries if name not in ("role", "column", "unit"))
     return {

@@ -9,7 +9,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike, NDArray
 
-from ptp_symbolic.errors import InputError
+from ptp_symbolic.errors import InputError, wrong_type
 from ptp_symbolic.models.committed import declared_platform
 from ptp_symbolic.models.variants import torque_driven
 from ptp_symbolic.numeric.runtime.model import Model
@@ -43,11 +43,7 @@ class Motion:
 
         Raises InputError for shapes that differ and values that are not finite.
         """
-        named = {
-            "angles": np.array(self.angles, dtype=np.float64),
-            "rates": np.array(self.rates, dtype=np.float64),
-            "accelerations": np.array(self.accelerations, dtype=np.float64),
-        }
+        named = {n: numbers_of(getattr(self, n), n) for n in ("angles", "rates", "accelerations")}
         for name, array in named.items():
             if array.ndim != 2 or array.shape[1] != len(axes) or len(array) != len(named["angles"]):
                 raise InputError(
@@ -55,13 +51,21 @@ class Motion:
                     f" each of {', '.join(axes)}."
                 )
         count = len(named["angles"])
-        times = np.zeros(count) if self.times is None else np.array(self.times, dtype=np.float64)
+        times = np.zeros(count) if self.times is None else numbers_of(self.times, "times")
         if times.shape != (count,):
             raise InputError(f"Motion: times have shape {times.shape}; give [{count}].")
         for name, array in (*named.items(), ("times", times)):
             if not np.all(np.isfinite(array)):
                 raise InputError(f"Motion: {name} are not all finite; remove what is not.")
         return (*named.values(), times)
+
+
+def numbers_of(given: ArrayLike, what: str) -> FloatArray:
+    """What is `given` for a part of a motion, as an array; raises InputError for no numbers."""
+    try:
+        return np.array(given, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"Motion: {what} are no array of numbers ({error}); give one.") from error
 
 
 def inverse_dynamics(
@@ -117,6 +121,8 @@ def _compiled(platform: Platform) -> tuple[tuple[str, ...], Torques, Torques]:
 def _motion(given: Motion | tuple[ArrayLike, ...]) -> Motion:
     if isinstance(given, Motion):
         return given
+    if not isinstance(given, list | tuple):
+        raise wrong_type("A motion", given, "angles, rates and accelerations [k, n], or a Motion")
     if not 3 <= len(given) <= 4:
         raise InputError(
             f"Motion: {len(given)} arrays; give angles, rates and accelerations, and times if any."

@@ -103,7 +103,7 @@ def simulated(
     """The states [k, n] of all runs from the start unknowns `z`, with the `torques` by
     axis of angles, rates and inputs [s] added to the joints; nan from where a simulation ends.
 
-    A torque is held from sample to sample of the log, as inputs are. All runs go on sample by
+    A torque is held from sample to sample of the log. All runs go on sample by
     sample, so that a torque is asked for once a sample.
     """
     model, runs, p, tolerance = free.model, free.runs, free.p, free.tolerance
@@ -128,7 +128,7 @@ def simulated(
                 own[place] += torque[row]
             ends = runs[r].time[k : k + 2]
             stops, x = table[r].with_stops(ends), states[r][k]
-            end = integrate(model, None, own, x, table[r], True, stops, ends, accuracy)
+            end = integrate(model, None, own, x, table[r], table[r].held, stops, ends, accuracy)
             if end.status == DONE:
                 states[r][k + 1] = end.x[-1]
     return states

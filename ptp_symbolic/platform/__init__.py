@@ -2,6 +2,7 @@
 
 from ptp_symbolic.platform.declaration import (
     AXES,
+    INTERPOLATIONS,
     JOINTS,
     SITES,
     STANDARD_GRAVITY,
@@ -11,6 +12,7 @@ from ptp_symbolic.platform.declaration import (
     Platform,
     SignalDeclaration,
     effect_key,
+    interpolation_of,
     naming_file,
 )
 from ptp_symbolic.platform.reader import platform_file, preset_names, read_platform
@@ -18,6 +20,7 @@ from ptp_symbolic.platform.writer import platform_text
 
 __all__ = [
     "AXES",
+    "INTERPOLATIONS",
     "JOINTS",
     "SITES",
     "STANDARD_GRAVITY",
@@ -27,6 +30,7 @@ __all__ = [
     "Platform",
     "SignalDeclaration",
     "effect_key",
+    "interpolation_of",
     "naming_file",
     "platform_file",
     "platform_text",

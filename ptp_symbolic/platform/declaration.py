@@ -11,6 +11,8 @@ AXES = ("pan", "tilt")  # that a platform may have, base first
 STANDARD_GRAVITY = 9.81  # m/s^2
 SITES = ("gear", "joint")  # where on its axis an effect may sit
 JOINTS = ("rotary", "linear")  # kinds of a joint
+INTERPOLATIONS = ("hold", "linear")  # of an input between its samples
+MOTIONS = ("rad/s", "rad/s^2", "m/s", "m/s^2")  # units of what a body does
 
 
 @dataclass(frozen=True)
@@ -53,6 +55,13 @@ class EffectDeclaration:
     kind: str | None = None
 
 
+def interpolation_of(unit: str) -> str:
+    """What an input in the SI `unit` is between its samples: "linear" for the motion of a body,
+    which sensors sample; "hold" for a torque, a voltage or a set-point, which a converter holds.
+    """
+    return "linear" if unit in MOTIONS else "hold"
+
+
 @dataclass(frozen=True)
 class SignalDeclaration:
     """One signal of the logs and the quantity of the model that it measures or sets.
@@ -65,7 +74,8 @@ class SignalDeclaration:
     With a `scale`, in `unit` per number of the column, the signal is scale (number - offset);
     without one it is the column, its unit converted, less the `offset` in `unit`. An output whose
     time stamp is t was measured at t - `delay`, an input acts on the machine at t + `delay`, in s.
-    `column_unit` is the unit of a column whose heading has none; None for `unit`.
+    `column_unit` is the unit of a column whose heading has none; None for `unit`. `interpolation`
+    is one of INTERPOLATIONS, what an input is between its samples; None for what suits its unit.
     """
 
     signal: str
@@ -79,6 +89,14 @@ class SignalDeclaration:
     offset: float = 0.0
     delay: float = 0.0
     column_unit: str | None = None
+    interpolation: str | None = None
+
+    @property
+    def between_samples(self) -> str:
+        """What an input is between its samples, one of INTERPOLATIONS: as declared, or else as
+        `interpolation_of` its unit.
+        """
+        return self.interpolation or interpolation_of(self.unit)
 
     @property
     def count(self) -> float | None:

@@ -6,7 +6,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from ptp_symbolic.errors import InputError, unknown
+from ptp_symbolic.errors import InputError, path_of, unknown
 from ptp_symbolic.platform import fields
 from ptp_symbolic.platform.declaration import (
     AXES,
@@ -83,7 +83,7 @@ def platform_file(source: str | Path, names: tuple[str, ...] = ()) -> Path:
     """
     if isinstance(source, str) and source in preset_names():
         return _PRESETS / f"{source}.toml"
-    path = Path(source)
+    path = path_of(source, "A platform", "the path of a platform TOML, or the name of a preset")
     try:
         missing = not path.exists()
     except (OSError, ValueError):

@@ -4,7 +4,7 @@ from typing import Any
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import fields
-from ptp_symbolic.platform.declaration import SignalDeclaration
+from ptp_symbolic.platform.declaration import INTERPOLATIONS, SignalDeclaration
 from ptp_symbolic.platform.units import compatible, to_si
 
 ROLES = ("input", "output")
@@ -23,6 +23,7 @@ ALLOWED = (
     "offset",
     "delay",
     "column_unit",
+    "interpolation",
 )
 RUN_BY_SPREADSHEETS = ("=", "+", "-", "@")  # what a formula begins with
 LONGEST_DELAY = 10.0  # s: beyond it stands a slip of the unit
@@ -77,6 +78,7 @@ def _signal(name: str, given: object, where: str) -> SignalDeclaration:
         *_raw(entry, factor, where),
         _delay(entry, where),
         _column_unit(entry, unit, where),
+        _interpolation(entry, role, where),
     )
 
 
@@ -126,3 +128,13 @@ def _delay(entry: dict[str, Any], where: str) -> float:
             " or the time stamps of the log."
         )
     return delay
+
+
+def _interpolation(entry: dict[str, Any], role: str, where: str) -> str | None:
+    if "interpolation" not in entry:
+        return None
+    if role == "output":
+        raise InputError(
+            f"{where}.interpolation: is for inputs; an output is compared at its samples alone."
+        )
+    return fields.choice(entry["interpolation"], INTERPOLATIONS, f"{where}.interpolation")

@@ -5,7 +5,7 @@ import math
 import re
 from typing import Any
 
-from ptp_symbolic.errors import InputError
+from ptp_symbolic.errors import InputError, wrong_type
 
 # The units the project itself writes. They need no conversion, so that common platforms and logs
 # are read without importing pint.
@@ -136,10 +136,7 @@ def quantity(given: float | str, unit: str, what: str) -> float:
     try:
         value = float(number)
     except (TypeError, ValueError) as error:
-        raise InputError(
-            f"{what} is of type {type(given).__name__}; give a number in {unit}, or a text with a"
-            " unit."
-        ) from error
+        raise wrong_type(what, given, f"a number in {unit}, or a text with a unit") from error
     if not math.isfinite(value):
         raise InputError(f"{what} = {text}; give a finite number.")
     if own != unit and not compatible(own, unit):

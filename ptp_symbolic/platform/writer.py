@@ -73,6 +73,7 @@ def _signal(signal: SignalDeclaration) -> dict[str, Any]:
         offset=float(signal.offset) if signal.offset else None,
         delay=f"{float(signal.delay)!r} s" if signal.delay else None,
         column_unit=signal.column_unit,
+        interpolation=signal.interpolation,
     )
 
 

@@ -58,3 +58,60 @@ def test_logs_that_are_not_there_are_one_line(call, table: tuple[Path, Path]) ->
     assert done.code == 2
     assert done.err.count("\n") == 1
     assert not done.out
+
+
+LEFT_OUT = """
+platform = { name = "turret", title = "Turret", axes = ["pan"], gravity = 1.62 }
+effects = [
+    { effect = "rigid_bodies" },
+    { effect = "csvs_friction", axis = "pan" },
+    { effect = "constant_torque", axis = "pan" },
+]
+
+[parameters]
+J_pan = { start = 0.03, unit = "kg m^2" }
+F_c_pan = { value = 0.1, unit = "N m" }
+F_s_pan = { same_as = "F_c_pan" }
+
+[signals]
+theta_pan = { role = "output", column = "angle", unit = "deg", counts_per_revolution = 65536 }
+"""
+
+
+def test_a_platform_alone_is_checked(call, tmp_path: Path) -> None:
+    """Every parameter with where its value comes from, and at the end, with exit code 2, what is
+    missing.
+    """
+    path = tmp_path / "turret.toml"
+    path.write_text(LEFT_OUT, encoding="utf-8")
+    done = call("check", "--platform", path)
+    assert done.code == 2 and done.err.count("\n") == 1
+    assert "Not declared, and without a natural default: v_s_pan in rad/s" in done.err
+    assert "F_v_pan in N m s/rad" in done.err and "tau0_pan" not in done.err
+    assert "States: theta_pan [rad], omega_pan [rad/s]." in done.out
+    assert "Inputs: tau_pan [N m]." in done.out
+    assert "theta_pan [rad] in column 'angle', omega_pan [rad/s]," in done.out
+    assert "To read logs, declare under [signals] too: tau_pan." in done.out
+    data = json.loads(call("check", "--platform", path, "--json").out)
+    assert {p["name"]: (p["value"], p["declared"]) for p in data["parameters"]} == {
+        "J_pan": (0.03, "fitted"),
+        "F_c_pan": (0.1, "known"),
+        "F_s_pan": (0.1, "same as F_c_pan"),
+        "v_s_pan": (None, "missing"),
+        "F_v_pan": (None, "missing"),
+        "tau0_pan": (0.0, "default"),
+        "gravity": (1.62, "known"),
+    }
+
+
+def test_a_whole_platform_passes_and_a_wrong_signal_does_not(call, tmp_path: Path) -> None:
+    path = tmp_path / "table.toml"
+    path.write_text(PLATFORM, encoding="utf-8")
+    done = call("check", "--platform", path)
+    assert (done.code, done.err) == (0, "")
+    path.write_text(PLATFORM.replace("tau_pan", "u_pan"), encoding="utf-8")
+    done = call("check", "--platform", path)
+    assert done.code == 2
+    assert "Unknown input signal 'u_pan': did you mean 'tau_pan'?" in done.err
+    done = call("check", "--platform", path, "--out", tmp_path / "out")
+    assert done.code == 2 and "--out is for what logs show" in done.err

@@ -42,4 +42,18 @@ def test_friction_has_its_parameters_with_units_and_bounds(call) -> None:
 def test_an_unknown_effect_is_refused_with_the_nearest(call) -> None:
     done = call("effects", "csvs_frictoin")
     assert done.code == 2
-    assert "Unknown effect 'csvs_frictoin': did you mean 'csvs_friction'?" in done.err
+    assert "Unknown effect 'csvs_frictoin'; the nearest are csvs_friction," in done.err
+
+
+def test_an_unknown_effect_is_refused_with_three_near_ones_and_where_all_are(call) -> None:
+    told = call("effects", "frictoin").err
+    assert "the nearest are csvs_friction, lugre_friction, friction_drift." in told
+    assert "`ptp-symbolic effects` lists all." in told
+    assert "backlash" not in told
+
+
+def test_what_an_effect_needs_says_what_to_declare(call) -> None:
+    told = call("effects", "torque_proportional_loss").out
+    assert "transmitted_torque_<axis>, from any axis without prescribed_motion" in told
+    told = call("effects", "pwm_drive").out
+    assert "from dc_motor or linear_actuator: declare one of them too" in told

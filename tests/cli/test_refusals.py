@@ -149,3 +149,23 @@ def test_arguments_of_functions_become_options_of_commands() -> None:
     said = in_options("`time_limit` or `black_box`, `parameters` but `nothing`", commands)
     assert said == "--time-limit or --black-box, --parameter but `nothing`"
     assert in_options("`time_limit`", commands.commands["fit"]) == "`time_limit`"
+
+
+def test_what_is_missing_or_misspelt_points_to_the_help(call) -> None:
+    for words, said in (
+        (("fit",), "Missing argument 'LOGS...'. See 'ptp-symbolic fit --help'."),
+        (("simulate",), "Missing option '--platform'. See 'ptp-symbolic simulate --help'."),
+        (("fit", "--platfrom", "x"), "Did you mean '--platform'? See 'ptp-symbolic fit --help'."),
+        (("bench", "--nope"), "No such option '--nope'. See 'ptp-symbolic bench --help'."),
+        (("nope",), "No such command 'nope'. See 'ptp-symbolic --help'."),
+    ):
+        done = call(*words)
+        assert done.code == 2
+        assert done.err.rstrip().endswith(said)
+
+
+def test_without_a_command_the_commands_are_listed_line_by_line(call) -> None:
+    done = call()
+    assert done.code == 2
+    lines = done.err.splitlines()
+    assert any(line.split()[:1] == ["diagnose"] for line in lines)

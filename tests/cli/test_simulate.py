@@ -102,9 +102,12 @@ def test_without_a_platform_of_signals_inputs_have_the_names_of_the_model(
         (("--step", "1e-3"), "--step 0.001 is for --method fixed_step alone; add that, or leave"),
         (("--step", "1e-3", "--method", "rosenbrock"), "--step 0.001 is for --method fixed_step"),
         (("--every", "0"), "Output every 0 s; give a positive number of seconds"),
-        (("--initial", "theta_pan=high"), "give theta_pan=VALUE, a number in rad."),
-        (("--initial", "omega_pan"), "give omega_pan=VALUE, a number in rad/s."),
-        (("--initial", "omega_pan=nan"), "Initial state 'omega_pan' = nan rad/s; give a finite"),
+        (
+            ("--initial", "theta_pan=high"),
+            "Initial state 'theta_pan' = 'high'; write a number, or a",
+        ),
+        (("--initial", "omega_pan"), "Initial state 'omega_pan' = ''; write a number, or a"),
+        (("--initial", "omega_pan=nan"), "Initial state 'omega_pan' = 'nan'; write a number"),
         (("--initial", "teta_pan=1"), "Unknown state 'teta_pan': did you mean 'theta_pan'?"),
         (("--input", "tau_pam=step:1@0"), "Unknown input 'tau_pam': did you mean 'tau_pan'?"),
         (("--input", "tau_pan=step:nan@0.5"), "nan is no finite number; use one of constant:3"),
@@ -199,3 +202,28 @@ def test_a_column_with_the_name_of_an_energy_is_refused(call, tmp_path: Path) ->
     assert done.code == 2
     assert "Column 'stored' of theta_pan has the name of an energy in J; declare it" in done.err
     assert not (tmp_path / "out").exists()
+
+
+def test_an_angle_of_several_turns_is_pointed_out_unless_it_has_a_unit(
+    call, tmp_path: Path
+) -> None:
+    """A joint may have turned as often, so it is no error; degrees without their unit are one."""
+    given = ("simulate", "--platform", "ideal", "--duration", "0.01", "--out", tmp_path)
+    done = call(*given, "--initial", "theta_pan=3000")
+    assert done.code == 0
+    said = "Note: theta_pan starts at 3000 rad, 477 turns; write degrees as 'theta_pan=3000 deg'."
+    assert said in done.err
+    for own in ("theta_pan=3000 deg", "theta_pan=0.3", "omega_pan=40"):
+        assert "Note" not in call(*given, "--initial", own).err
+    columns = (tmp_path / "trajectory.csv").read_text(encoding="utf-8").splitlines()[1].split(",")
+    assert float(columns[1]) == 0.0
+    call(*given, "--initial", "theta_pan=30 deg")
+    columns = (tmp_path / "trajectory.csv").read_text(encoding="utf-8").splitlines()[1].split(",")
+    assert abs(float(columns[1]) - 0.5235987755982988) < 1e-15
+
+
+def test_a_set_point_of_several_turns_is_pointed_out(call, tmp_path: Path) -> None:
+    given = ("simulate", "--platform", "thesis-pan-servo", "--duration", "0.01", "--out", tmp_path)
+    done = call(*given, "--input", "setpoint_pan=step:30@0.001")
+    assert "setpoint_pan goes to 30 rad, 4.77 turns; a profile is in rad, not in deg." in done.err
+    assert "Note" not in call(*given, "--input", "setpoint_pan=step:0.3@0.001").err

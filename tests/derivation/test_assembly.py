@@ -83,7 +83,10 @@ def test_a_tied_parameter_takes_the_value_of_the_other() -> None:
 @pytest.mark.parametrize(
     ("platform", "message"),
     [
-        (with_effect("wings"), r"Unknown effect 'wings'\. Choose one of: rigid_bodies, payload, "),
+        (
+            with_effect("wings"),
+            r"Unknown effect 'wings'; the nearest are \w+, \w+, \w+\. `ptp-symbolic effects` lists",
+        ),
         (
             with_effect("cable_spring"),
             r"Effect 'cable_spring' sits on an axis; add axis = \"pan\"\.",

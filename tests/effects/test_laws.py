@@ -59,7 +59,7 @@ def test_all_candidates_fit_into_one_machine(base: Platform) -> None:
 
 def test_an_unknown_effect_is_refused() -> None:
     base = bases()[0]
-    with pytest.raises(ValueError, match=r"Unknown effect 'wings'\. Choose one of: rigid_bodies"):
+    with pytest.raises(ValueError, match=r"Unknown effect 'wings'; the nearest are "):
         assemble(replace(base, effects=(*base.effects, EffectDeclaration("wings", None, None))))
 
 
@@ -210,7 +210,7 @@ def test_an_installed_package_adds_its_effects(tmp_path: Path) -> None:
     ("value", "message"),
     [
         ("nowhere_at_all:EFFECT", "cannot be loaded: No module named 'nowhere_at_all'"),
-        ("math:pi", "is of type float; it must be an Effect"),
+        ("math:pi", "is of type float; give an Effect"),
         (
             "ptp_symbolic.symbolic.effects.quadratic_drag:QUADRATIC_DRAG",
             "has the id 'quadratic_drag', which is taken",

@@ -8,8 +8,13 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.identify.run import samples_within, thinned, with_inputs
-from ptp_symbolic.numeric.simulation.signals.inputs import held_values
+from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, sampled_signals
 from tests.identify.straight import run_of
+
+
+def steps_of(signal: InputSignal) -> tuple[np.ndarray, np.ndarray]:
+    """Times and values of a zero-order hold."""
+    return signal.breaks[:-1], signal.coefficients[:, 0]
 
 
 def test_inputs_keep_their_integral() -> None:
@@ -21,7 +26,8 @@ def test_inputs_keep_their_integral() -> None:
     assert np.array_equal(few.time, run.time[::5])
     assert np.array_equal(few.measured, run.measured[::5])
     last = int(np.searchsorted(run.time, few.time[-1]))
-    for column, (times, values) in enumerate(held_values(few.inputs)):
+    for column, signal in enumerate(sampled_signals(few.inputs)):
+        times, values = steps_of(signal)
         whole = np.sum(run.held_inputs[:last, column] * np.diff(run.time)[:last])
         kept = np.sum(values[:-1] * np.diff(times))
         assert kept == pytest.approx(whole, abs=1e-12)
@@ -33,7 +39,8 @@ def test_a_step_stays_where_it_was() -> None:
     noise = 0.002 * np.random.default_rng(1).standard_normal(500)
     run = run_of(500, 1, (step + noise)[:, None])
     run = with_inputs(run, run.held_inputs)
-    ((times, values),) = held_values(thinned(run, 5).inputs)
+    (signal,) = sampled_signals(thinned(run, 5).inputs)
+    times, values = steps_of(signal)
     assert set(times) == {*run.time[::5], run.time[133]}
     assert np.all(np.abs(values - (times >= run.time[133])) < 0.01)
 
@@ -41,7 +48,8 @@ def test_a_step_stays_where_it_was() -> None:
 def test_noise_alone_has_no_steps() -> None:
     run = run_of(500, 1, np.random.default_rng(2).standard_normal((500, 1)))
     run = with_inputs(run, run.held_inputs)
-    ((times, _),) = held_values(thinned(run, 5).inputs)
+    (signal,) = sampled_signals(thinned(run, 5).inputs)
+    times, _ = steps_of(signal)
     assert len(times) <= 103
 
 

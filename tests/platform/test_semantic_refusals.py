@@ -32,7 +32,7 @@ def declared(folder: Path, text: str) -> Platform:
     [
         (
             '[[effects]]\neffect = "csvs_frictoin"\naxis = "pan"',
-            "Unknown effect 'csvs_frictoin': did you mean 'csvs_friction'? Choose one of: rigid_",
+            "Unknown effect 'csvs_frictoin'; the nearest are csvs_friction, ",
         ),
         (
             '[[effects]]\neffect = "base_tilt"',

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ptp_symbolic.errors import InputError
+from ptp_symbolic.errors import InputError, path_of
 from ptp_symbolic.formats.robots.axes import Carried, Seen, seen
 from ptp_symbolic.formats.robots.mjcf import read_mjcf
 from ptp_symbolic.formats.robots.robot import Robot, about
@@ -74,7 +74,7 @@ def read_robot(
     >>> imported = ptp.read_robot("turret.urdf", pan="yaw", tilt="pitch")  # doctest: +SKIP
     >>> machine = ptp.load(imported.platform)  # doctest: +SKIP
     """
-    path = Path(file)
+    path = path_of(file, "A robot", "the path of a URDF or MJCF file")
     named = {axis: joint for axis, joint in (("pan", pan), ("tilt", tilt)) if joint is not None}
     if not named or pan == tilt:
         raise InputError(

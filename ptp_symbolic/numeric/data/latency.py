@@ -1,12 +1,12 @@
 """Signals that are logged late or act late: put on one clock, that of the motion.
 
 Outputs that share a delay keep their samples, which move on the time axis as they are; others are
-interpolated. Inputs keep the steps at which they really change, and are averaged from sample to
-sample of that clock beside.
+interpolated. Inputs that are held keep the steps at which they really change, and are averaged from
+sample to sample of that clock beside; those that are measured have straight lines between samples.
 
 What a signal was between its samples: by cubics, not over lost samples, and not over jumps.
 
-A signal that holds its value from sample to sample: its averages between given times.
+Averages of an input between given times: of its steps, or of the lines between its samples.
 
 Angles that wrap at a turn or at the end of a counter, made continuous; gaps in the sampling.
 """
@@ -125,14 +125,24 @@ def parted(time: FloatArray, gaps: IntArray) -> list[slice]:
     return parts or [slice(0, len(time))]
 
 
-def held_averages(time: FloatArray, held: FloatArray, edges: FloatArray) -> FloatArray:
-    """Averages [m] between neighbouring `edges` [m + 1] in s of the signal that takes the value
-    `held` [n] at `time` [n] in s; before the first sample it is that.
+def input_averages(
+    time: FloatArray, values: FloatArray, edges: FloatArray, interpolation: str = "hold"
+) -> FloatArray:
+    """Averages [m] between neighbouring `edges` [m + 1] in s of the input that has the `values` [n]
+    at `time` [n] in s, and by its `interpolation` ("hold" or "linear") between them; before the
+    first sample and after the last it is constant.
     """
-    integral = np.concatenate([[0.0], np.cumsum(held[:-1] * np.diff(time))])
+    period, is_linear = np.diff(time), interpolation == "linear" and len(time) > 1
+    middle = 0.5 * (values[:-1] + values[1:]) if is_linear else values[:-1]
+    integral = np.concatenate([[0.0], np.cumsum(middle * period)])
     at = np.interp(edges, time, integral)
-    at += np.where(edges < time[0], (edges - time[0]) * held[0], 0.0)
-    at += np.where(edges > time[-1], (edges - time[-1]) * held[-1], 0.0)
+    if is_linear:
+        inside = np.clip(edges, time[0], time[-1])
+        k = np.clip(np.searchsorted(time, inside, side="right") - 1, 0, len(time) - 2)
+        since, slope = inside - time[k], np.diff(values)[k] / period[k]
+        at += 0.5 * slope * since * (since - period[k])
+    at += np.where(edges < time[0], (edges - time[0]) * values[0], 0.0)
+    at += np.where(edges > time[-1], (edges - time[-1]) * values[-1], 0.0)
     return np.asarray(np.diff(at) / np.diff(edges))
 
 
@@ -245,9 +255,10 @@ SLOWER = 1.5  # times the period of another: a clock of its own, not the same on
 @dataclass(frozen=True, eq=False)
 class Clocked:
     """All signals at one clock: the times [k] in s at which the outputs were measured, `values`
-    [k, nu + ny] at them, and the `steps` of the inputs. `interpolated` are the columns of outputs
-    between samples, each with how far it may be off where the motion changes suddenly; `thinned`
-    those of which samples are left out, each with how many times as fast it was logged.
+    [k, nu + ny] at them, and the `steps` of the inputs (samples of those with lines between).
+    `interpolated` are the columns of outputs between samples, each with how far it may be off where
+    the motion changes suddenly; `thinned` those of which samples are left out, each with how many
+    times as fast it was logged.
     """
 
     time: FloatArray
@@ -264,7 +275,8 @@ def on_one_clock(
     outputs: Sequence[SignalDeclaration],
 ) -> Clocked:
     """Put the `series` of every signal on the clock of the slowest encoder, of about equally fast
-    ones that of the first; an input acts from the time at which it was logged to the next.
+    ones that of the first; an input that is held acts from the time at which it was logged to the
+    next.
 
     Samples for which a signal is not there yet, or no more, are left out, and those at which one
     that is interpolated lacks samples, or jumps. Raises InputError where less than two are left.
@@ -359,17 +371,20 @@ def delayed_inputs(
     series: Sequence[Series], inputs: Sequence[SignalDeclaration], clock: FloatArray
 ) -> FloatArray:
     """Return what acts on the machine from every time of `clock` [k] to the next, [k, nu], of the
-    `series` of every input, which are held from sample to sample. The first acts from ever.
+    `series` of inputs that are held from sample to sample, and what acts at it of others. The first
+    acts from ever.
     """
     edges = np.append(clock, 2.0 * clock[-1] - clock[-2])
     moved = []
     for signal, (time, column) in zip(inputs, series, strict=True):
         acts = time + signal.delay
         at = _all_at(acts, clock)
-        if at is None:
+        if at is None and signal.between_samples == "linear":
+            moved.append(np.interp(clock, acts, column))
+        elif at is None:
             at = np.maximum(np.searchsorted(acts, edges, side="right") - 1, 0)
             changes = column[at[1:]] != column[at[:-1]]
-            averages = held_averages(acts, column, edges)
+            averages = input_averages(acts, column, edges)
             moved.append(np.where(changes | (np.diff(at) > 1), averages, column[at[:-1]]))
         else:
             moved.append(column[at])

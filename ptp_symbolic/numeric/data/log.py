@@ -162,9 +162,10 @@ class Log:
     """One run: `time` [n] in s, strictly increasing; `inputs` [n, nu]; `outputs` [n, ny].
 
     Columns are in the order of the platform's signals of that role and in their units (SI), scales,
-    offsets and delays of the signals applied. The sampling may be irregular; inputs are zero-order
-    hold. Where they change between samples, being delayed, `inputs` are averages from sample to
-    sample, and `steps` the times in s and values [m] of every input (empty: as `inputs` say).
+    offsets and delays of the signals applied. The sampling may be irregular; between samples an
+    input is what its signal says (see `SignalDeclaration.between_samples`). Where zero-order holds
+    change between samples, being delayed, `inputs` are averages from sample to sample, and `steps`
+    the times in s and values [m] of every input (empty: as `inputs` say).
     `wraps` tells of which angles turns, or ends of a counter, were taken out; `interpolated` which
     columns have values between their samples, and how far these may be off where the motion changes
     suddenly; `thinned` which were logged faster than `time`, and how many times as fast.

@@ -47,7 +47,7 @@ from ptp_symbolic.numeric.identify.windows import (
     split_run,
 )
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import held_values, stack, table
+from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, sampled_signals, stack
 
 FloatArray = NDArray[np.float64]
 
@@ -86,13 +86,13 @@ def _matters(model: Model, run: Run, p: FloatArray, gaps: IntArray) -> bool:
 def _changed_at_begin(run: Run, gaps: IntArray) -> Run:
     """The run with inputs that change right after the last samples before the gaps."""
     signals = []
-    for times, values in held_values(run.inputs):
-        earlier = values.copy()
+    for signal in sampled_signals(run.inputs):
+        times, earlier = signal.breaks[:-1], signal.coefficients.copy()
         for gap in gaps:
             inside = (times >= run.time[gap - 1]) & (times < run.time[gap])
-            held = max(0, int(np.searchsorted(times, run.time[gap], side="right")) - 1)
-            earlier[inside] = values[held]
-        signals.append(table(times, earlier, "hold"))
+            after = max(0, int(np.searchsorted(times, run.time[gap], side="right")) - 1)
+            earlier[inside] = [signal.coefficients[after, 0], 0.0, 0.0, 0.0]
+        signals.append(InputSignal(signal.breaks, earlier))
     return replace(run, inputs=stack(signals))
 
 

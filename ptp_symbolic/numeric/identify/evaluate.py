@@ -297,7 +297,7 @@ def evaluate(
         p,
         x,
         table,
-        True,
+        table.held,
         table.with_stops(run.time) if np.any(late) else run.stops,
         run.time,
         Accuracy(tolerance.relative, tolerance.absolute(model), 1.0),

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.data.latency import held_averages
+from ptp_symbolic.numeric.data.latency import input_averages
 from ptp_symbolic.numeric.identify.constants import (
     ANYWHERE,
     DEVIATIONS,
@@ -31,7 +31,7 @@ from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.inputs import (
     InputSignal,
     InputTable,
-    held_values,
+    sampled_signals,
     stack,
     table,
 )
@@ -162,7 +162,9 @@ class Run:
     `source` is the name of the log that it is of, its own `name` that or one for the window alone.
     `outputs` [ny] gives the model output of every measured column, `counts` [ny] the size of one
     encoder count in rad or m (nan for analog signals); `start` [n] guesses the state at the first
-    sample. In a window, `before` [nu] is what the inputs were until then.
+    sample. `held_inputs` are the inputs at the samples, and `interpolations` [nu] tell what they
+    are from one to the next: "hold" or "linear" (empty: all are held). In a window, `before` [nu]
+    is what the inputs were until then.
     `work` counts what is simulated of it and of its windows.
     """
 
@@ -179,12 +181,17 @@ class Run:
     start: FloatArray
     unknowns: tuple[StartUnknown, ...]
     before: FloatArray | None = None
+    interpolations: tuple[str, ...] = ()
     work: Work = field(default_factory=Work)
 
     @property
     def evidence_parts(self) -> tuple[Any, ...]:
         """All that a simulation of it depends on, and what it is compared with."""
         return tuple(getattr(self, f.name) for f in fields(self) if f.name != "work")
+
+    def interpolation(self, column: int) -> str:
+        """What the input of that `column` is between its samples."""
+        return self.interpolations[column] if self.interpolations else "hold"
 
     @cached_property
     def stops(self) -> FloatArray:
@@ -338,9 +345,10 @@ def _unknown(
 
 
 def with_inputs(run: Run, values: NDArray[np.float64]) -> Run:
-    """`run` with the inputs `values` [k, nu], zero-order hold from sample to sample."""
+    """`run` with the inputs `values` [k, nu] at its samples."""
     held = np.ascontiguousarray(values)
-    return replace(run, inputs=stack([table(run.time, c) for c in held.T]), held_inputs=held)
+    signals = [table(run.time, c, run.interpolation(k)) for k, c in enumerate(held.T)]
+    return replace(run, inputs=stack(signals), held_inputs=held)
 
 
 def by_source(runs: Sequence[Run]) -> list[list[int]]:
@@ -362,25 +370,32 @@ def sizes(runs: Sequence[Run]) -> FloatArray:
 
 
 def cell_averages(run: Run, column: int, delay: float, grid: IntArray) -> FloatArray:
-    """A zero-order-hold input [g], delayed by `delay` s, averaged over the cell around every sample
-    of a `grid` [g].
+    """An input [g], delayed by `delay` s, averaged over the cell around every sample of a `grid`
+    [g].
     """
-    time = run.time[grid]
+    return _averages(run, column, _cell_edges(run.time[grid]) - delay)
+
+
+def _cell_edges(time: FloatArray) -> FloatArray:
+    """Edges [n + 1] in s of the cells around every one of the times [n] in s."""
     middle = 0.5 * (time[1:] + time[:-1])
-    edges = np.concatenate(
+    return np.concatenate(
         [[1.5 * time[0] - 0.5 * time[1]], middle, [1.5 * time[-1] - 0.5 * time[-2]]]
     )
-    return held_averages(run.time, run.held_inputs[:, column], edges - delay)
 
 
 def part_averages(run: Run, column: int, delay: float, parts: int) -> FloatArray:
-    """A zero-order-hold input, delayed by `delay` s, averaged over equal parts of every sample
-    [k - 1, parts].
-    """
+    """An input, delayed by `delay` s, averaged over equal parts of every sample [k - 1, parts]."""
     shares = np.arange(parts) / parts
     edges = run.time[:-1, None] + np.diff(run.time)[:, None] * shares
     flat = np.append(edges.ravel(), run.time[-1])
-    return held_averages(run.time, run.held_inputs[:, column], flat - delay).reshape(-1, parts)
+    return _averages(run, column, flat - delay).reshape(-1, parts)
+
+
+def _averages(run: Run, column: int, edges: FloatArray) -> FloatArray:
+    """Averages [m] of an input between neighbouring `edges` [m + 1] in s."""
+    between = run.interpolation(column)
+    return input_averages(run.time, run.held_inputs[:, column], edges, between)
 
 
 def usual_period(runs: Sequence[Run]) -> float:
@@ -394,8 +409,8 @@ def samples_within(run: Run, period: float) -> int:
 
 
 def thinned(run: Run, every: int) -> Run:
-    """`run` with the first of `every` so many samples, the inputs averaged in between. Inputs jump
-    where they did: a step that comes half a sample late moves an angle by counts.
+    """`run` with the first of `every` so many samples, the inputs averaged in between. Inputs that
+    are held jump where they did: a step that comes half a sample late moves an angle by counts.
     """
     if every < 2:
         return run
@@ -406,20 +421,32 @@ def thinned(run: Run, every: int) -> Run:
         time=time,
         measured=np.ascontiguousarray(run.measured[kept]),
         held_inputs=np.ascontiguousarray(run.held_inputs[kept]),
-        inputs=stack([_averaged(*signal, time) for signal in held_values(run.inputs)]),
+        inputs=stack(
+            [
+                _fewer(
+                    signal.breaks[:-1], signal.coefficients[:, 0], time, run.interpolation(column)
+                )
+                for column, signal in enumerate(sampled_signals(run.inputs))
+            ]
+        ),
     )
 
 
-def _averaged(times: FloatArray, values: FloatArray, edges: FloatArray) -> InputSignal:
-    """A zero-order hold averaged between `edges` in s and the jumps that stand out: beyond noise
-    and slope, and a material share of its range.
+def _fewer(
+    times: FloatArray, values: FloatArray, edges: FloatArray, interpolation: str
+) -> InputSignal:
+    """An input averaged around `edges` in s, or, where it is held, between them and the jumps that
+    stand out: beyond noise and slope, and a material share of its range.
     """
+    if interpolation == "linear":
+        means = input_averages(times, values, _cell_edges(edges), interpolation)
+        return table(edges, means, interpolation)
     rise = np.abs(np.diff(values))
     usual = float(np.median(rise) / stats.norm.ppf(0.75)) if rise.size else 0.0
     jumps = times[1:][rise > max(FAR * usual, LITTLE * float(np.ptp(values)))]
     at = np.union1d(edges, jumps[(jumps > edges[0]) & (jumps < edges[-1])])
     last = values[max(0, int(np.searchsorted(times, edges[-1], side="right")) - 1)]
-    return table(at, np.append(held_averages(times, values, at), last))
+    return table(at, np.append(input_averages(times, values, at), last))
 
 
 def grid_averages(values: FloatArray, grid: IntArray) -> FloatArray:

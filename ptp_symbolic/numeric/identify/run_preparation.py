@@ -47,6 +47,7 @@ def prepare_runs(
             )
     refuse_unseen_angles(model, [s.signal for s in outputs])
     order = [[s.signal for s in given].index(name) for name in model.input_names]
+    between = tuple(given[k].between_samples for k in order)
     counts = np.array([np.nan if s.count is None else s.count for s in outputs])
     sigma = np.array(
         [
@@ -56,7 +57,18 @@ def prepare_runs(
     )
     work = Work() if work is None else work
     return tuple(
-        _prepare(model, outputs, piece, order, counts, sigma, log.name, work, underway=number > 0)
+        _prepare(
+            model,
+            outputs,
+            piece,
+            order,
+            between,
+            counts,
+            sigma,
+            log.name,
+            work,
+            underway=number > 0,
+        )
         for log in logs
         for number, piece in enumerate(_pieces(log, counts))
     )
@@ -91,6 +103,7 @@ def _prepare(
     outputs: Sequence[SignalDeclaration],
     log: Log,
     order: list[int],
+    between: tuple[str, ...],
     counts: FloatArray,
     sigma: FloatArray,
     source: str,
@@ -103,7 +116,9 @@ def _prepare(
         name=log.name,
         source=source,
         time=np.ascontiguousarray(log.time),
-        inputs=stack([table(*steps[k]) for k in order]),
+        inputs=stack(
+            [table(steps[k][0], steps[k][1], b) for k, b in zip(order, between, strict=True)]
+        ),
         held_inputs=np.ascontiguousarray(log.inputs[:, order]),
         measured=np.ascontiguousarray(log.outputs),
         outputs=np.array([model.output_names.index(s.signal) for s in outputs], dtype=np.int64),
@@ -112,6 +127,7 @@ def _prepare(
         signals=tuple(s.signal for s in outputs),
         start=np.empty(0),
         unknowns=(),
+        interpolations=between,
         work=work,
     )
     return with_start(model, run, underway=underway)

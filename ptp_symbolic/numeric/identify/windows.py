@@ -44,7 +44,7 @@ from ptp_symbolic.numeric.identify.least_squares import (
 from ptp_symbolic.numeric.identify.noise import white_noise
 from ptp_symbolic.numeric.identify.run import WINDOW, Around, Run, thinned, with_inputs, with_start
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import part_of_held
+from ptp_symbolic.numeric.simulation.signals.inputs import part_of_sampled
 
 BoolArray = NDArray[np.bool_]
 FloatArray = NDArray[np.float64]
@@ -72,8 +72,8 @@ def replayed(
     tolerance: Tolerance = DEFAULT_TOLERANCE,
 ) -> tuple[FloatArray, FloatArray]:
     """Changes [k * ny, times] of the weighted residuals by input noise, each from another draw, and
-    the Jacobian by the start of the run; nan where it cannot be simulated. Inputs are held from
-    sample to sample, whatever the log has in between.
+    the Jacobian by the start of the run; nan where it cannot be simulated. Inputs change at
+    samples alone, whatever the log has in between.
     """
     none = np.zeros(0, dtype=np.int64)
     plain = evaluate(model, with_inputs(run, run.held_inputs), p, z, none, True, tolerance)
@@ -363,7 +363,7 @@ def piece_of(run: Run, part: slice, number: int) -> Run:
         run,
         name=f"{run.name}{WINDOW}{number}",
         time=time,
-        inputs=part_of_held(run.inputs, time[0], time[-1]),
+        inputs=part_of_sampled(run.inputs, time[0], time[-1]),
         held_inputs=np.ascontiguousarray(run.held_inputs[part]),
         measured=np.ascontiguousarray(run.measured[part]),
     )

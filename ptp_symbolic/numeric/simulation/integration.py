@@ -7,7 +7,7 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.errors import InputError
+from ptp_symbolic.errors import InputError, number_of
 from ptp_symbolic.numeric.runtime.element_layout import contact_guards, contact_modes
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation import hybrid
@@ -107,7 +107,7 @@ def checked_accuracy(
     Raises InputError for a tolerance or a largest step that is not above zero.
     """
     for name, value in (("rtol", rtol), ("atol", atol), ("largest_step", largest_step)):
-        if not value > 0.0:
+        if not number_of(value, f"`{name}`") > 0.0:
             raise InputError(f"{name} = {value:g}; give a number above zero.")
     return Accuracy(rtol, atol * tolerance_weights(model), largest_step, most_steps)
 

@@ -31,7 +31,8 @@ def find_effect(identifier: str) -> Effect:
     for effect in catalogue():
         if effect.id == identifier:
             return effect
-    raise unknown("effect", identifier, (effect.id for effect in catalogue()))
+    known = (effect.id for effect in catalogue())
+    raise unknown("effect", identifier, known, listing="`ptp-symbolic effects`")
 
 
 def _of_kind(effect: Effect, kind: str | None) -> Effect:

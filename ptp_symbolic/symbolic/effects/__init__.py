@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from importlib.metadata import entry_points
 
-from ptp_symbolic.errors import InputError
+from ptp_symbolic.errors import InputError, wrong_type
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effects.actuator_lag import ACTUATOR_LAG
 from ptp_symbolic.symbolic.effects.axis_offset import AXIS_OFFSET
@@ -135,7 +135,7 @@ def effects_of_others() -> tuple[Effect, ...]:
         except Exception as error:  # what another package raises when it is imported
             raise InputError(f"{where} cannot be loaded: {error}; mend or uninstall it.") from error
         if not isinstance(effect, Effect):
-            raise InputError(f"{where} is of type {type(effect).__name__}; it must be an Effect.")
+            raise wrong_type(where, effect, "an Effect")
         if effect.id in {e.id for e in (*PACKAGED, *found)}:
             raise InputError(f"{where} has the id '{effect.id}', which is taken; choose another.")
         found.append(effect)

@@ -18,7 +18,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ptp_symbolic.errors import InputError, unknown
+from ptp_symbolic.errors import InputError, unknown, wrong_type
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.input_values import (
     evaluate_input_slopes,
@@ -192,9 +192,9 @@ def multisine(
 def table(times: ArrayLike, values: ArrayLike, interpolation: str = "hold") -> InputSignal:
     """Samples `values` [n] at `times` [n] in s, constant outside.
 
-    interpolation: "hold" is the zero-order hold (columns of a log), "linear" joins the samples,
-    "cubic" is the twice differentiable spline (not-a-knot). Raises InputError for another one, for
-    shapes that differ, too few samples, and times that do not increase.
+    interpolation: "hold" is the zero-order hold (what is commanded), "linear" joins the samples
+    (what is measured), "cubic" is the twice differentiable spline (not-a-knot). Raises InputError
+    for another one, for shapes that differ, too few samples, and times that do not increase.
     """
     at, value = np.asarray(times, dtype=np.float64), np.asarray(values, dtype=np.float64)
     least = 1 if interpolation == "hold" else 2
@@ -235,11 +235,15 @@ def function(of_time: Callable[[float], float], t0: float, t1: float) -> InputSi
     """
 
     def value(t: float) -> float:
-        found = np.asarray(of_time(t), dtype=np.float64)
+        returned = of_time(t)
+        try:
+            found = np.asarray(returned, dtype=np.float64)
+        except (TypeError, ValueError):
+            found = np.zeros(0)
         if found.size != 1 or not np.isfinite(found).all():
             raise InputError(
-                f"The input function returns {found.tolist()!r} at {t:g} s; it must return one"
-                " finite number."
+                f"The input function returns {returned!r} at {t:g} s; it must return one finite"
+                " number."
             )
         return float(found.reshape(()) if found.ndim == 0 else found.reshape(-1)[0])
 
@@ -333,21 +337,24 @@ def _stacked(signals: tuple[InputSignal, ...]) -> InputTable:
     )
 
 
-def held_values(whole: InputTable) -> list[tuple[FloatArray, FloatArray]]:
-    """Times [m] in s and values [m] of every zero-order hold of `whole`."""
+def sampled_signals(whole: InputTable) -> list[InputSignal]:
+    """The signals of a `whole` that is stacked of samples, without sines and sweeps."""
     return [
-        (whole.breaks[first + j : last + j], whole.coefficients[first:last, 0])
+        InputSignal(whole.breaks[first + j : last + j + 1], whole.coefficients[first:last])
         for j, (first, last) in enumerate(pairwise(whole.offsets))
     ]
 
 
-def part_of_held(whole: InputTable, begin: float, end: float) -> InputTable:
-    """The zero-order holds of `whole` from `begin` to `end` in s; before it what holds then."""
+def part_of_sampled(whole: InputTable, begin: float, end: float) -> InputTable:
+    """The pieces of the sampled signals of `whole` from `begin` to `end` in s; before the first of
+    them, and after the last, a signal is constant.
+    """
     signals = []
-    for times, values in held_values(whole):
+    for signal in sampled_signals(whole):
+        times = signal.breaks[:-1]
         a = max(0, int(np.searchsorted(times, begin, side="right")) - 1)
         b = max(a + 1, int(np.searchsorted(times, end, side="right")))
-        signals.append(table(times[a:b], values[a:b], "hold"))
+        signals.append(InputSignal(signal.breaks[a : b + 1], signal.coefficients[a:b]))
     return stack(signals)
 
 
@@ -433,9 +440,11 @@ def as_signals(
             except InputError as error:
                 raise InputError(f"Input '{name}': {error}") from error
         if not isinstance(signal, InputSignal):
-            raise InputError(
-                f"Input '{name}' is of type {type(signal).__name__}; give a profile such as"
-                " 'constant:3', or a signal of ptp_symbolic.numeric.simulation.signals.inputs."
+            raise wrong_type(
+                f"Input '{name}'",
+                signal,
+                "a profile such as 'constant:3', or a signal of"
+                " ptp_symbolic.numeric.simulation.signals.inputs",
             )
         signals[name] = signal
     return signals
