@@ -14,7 +14,7 @@ from ptp_symbolic.numeric.diagnose.declared_fit import over_whole_runs
 from ptp_symbolic.numeric.diagnose.findings import Step
 from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
-from ptp_symbolic.numeric.diagnose.proposals import Proposal, propose, start_for
+from ptp_symbolic.numeric.diagnose.proposals import Proposal, Proposals, propose, start_for
 from ptp_symbolic.numeric.diagnose.refits import is_near_floor
 from ptp_symbolic.numeric.diagnose.search import floated
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
@@ -26,12 +26,18 @@ from tests.diagnose.spring_table import STIFFNESS, spring_table
 STUCK = 1.0002
 
 
-@pytest.fixture
-def seeker(tmp_path: Path) -> Iterator[Seeker]:
-    with spring_table(tmp_path) as task:
+@pytest.fixture(scope="module")
+def begun(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Task, Trial, Proposals]]:
+    with spring_table(tmp_path_factory.mktemp("spring")) as task:
         proposals = propose(task)
-        task, declared = over_whole_runs(task, proposals)
-        yield Seeker(task, declared, proposals, carried_noise(task, declared.fit))
+        yield (*over_whole_runs(task, proposals), proposals)
+
+
+@pytest.fixture
+def seeker(begun: tuple[Task, Trial, Proposals]) -> Seeker:
+    """A search of its own for every test: tests change what it has found and what it may take."""
+    task, declared, proposals = begun
+    return Seeker(task, declared, proposals, carried_noise(task, declared.fit))
 
 
 def test_what_leaves_only_noise_is_found_without_windows(
