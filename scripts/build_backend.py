@@ -3,18 +3,22 @@
 The runners and the committed models are compiled for any processor of the last ten years, which
 takes a minute or two, and their code goes into the wheel, which is then one for this Python and
 this kind of machine. Where that is not possible, or PTP_SYMBOLIC_AHEAD=0 says not to, the wheel
-holds Python alone, and every machine compiles what it runs.
+holds Python alone, and every machine compiles what it runs. In a folder that
+PTP_SYMBOLIC_AHEAD_KEPT names, what one build compiled is kept for the next one of the same sources.
 """
 
 from __future__ import annotations
 
+import hashlib
 import os
+import platform
 import shutil
 import subprocess
 import sys
 import tempfile
 import tomllib
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +26,15 @@ from setuptools import build_meta, dist
 
 CHECKOUT = Path(__file__).resolve().parent.parent
 COMPILED = CHECKOUT / "ptp_symbolic" / "compiled"
+KEPT = "PTP_SYMBOLIC_AHEAD_KEPT"
+# What decides on the machine code. Were it too little, code that does not fit would be passed over.
+DECIDING = (
+    "pyproject.toml",
+    "scripts/build_backend.py",
+    "generated",
+    "ptp_symbolic/numeric/simulation",
+    "ptp_symbolic/numeric/runtime",
+)
 NEEDED = ("numba", "numpy", "scipy", "tomlkit", "markupsafe")  # to import and compile the kernels
 MODELS = ("payload", "pan_drive", "full", "tilt_drive")
 # The checkout as an installation has it: emitted modules inside the package.
@@ -55,9 +68,30 @@ def get_requires_for_build_editable(config_settings: Any = None) -> list[str]:
     return [*build_meta.get_requires_for_build_editable(config_settings), *compilers()]
 
 
+def kept() -> Path | None:
+    """The folder for what is compiled of these sources by this Python; None where none is named."""
+    named = os.environ.get(KEPT)
+    if not named:
+        return None
+    digest = hashlib.sha256(f"{sys.version} {platform.platform()}".encode())
+    for part in DECIDING:
+        path = CHECKOUT / part
+        for source in sorted(path.rglob("*.py")) if path.is_dir() else [path]:
+            digest.update(source.read_bytes())
+    return Path(named, digest.hexdigest()[:16])
+
+
+def is_kept() -> bool:
+    """Whether an earlier build has compiled these sources."""
+    folder = kept()
+    return folder is not None and folder.is_dir()
+
+
 def compilers() -> list[str]:
-    """The requirements of the package that its kernels are compiled with."""
-    if not is_wanted():
+    """The requirements of the package that its kernels are compiled with; none where they need not
+    be compiled.
+    """
+    if not is_wanted() or is_kept():
         return []
     with (CHECKOUT / "pyproject.toml").open("rb") as file:
         required: list[str] = tomllib.load(file)["project"]["dependencies"]
@@ -85,13 +119,28 @@ def compile_ahead() -> None:
     shutil.rmtree(COMPILED, ignore_errors=True)
     if not is_wanted():
         return
-    with tempfile.TemporaryDirectory() as scratch:
-        made = Path(scratch, "compiled")
-        made.mkdir()
-        if compiled_into(made, Path(scratch)):
+    folder = kept()
+    if folder is not None and folder.is_dir():
+        shutil.copytree(folder, COMPILED)
+    else:
+        with tempfile.TemporaryDirectory() as scratch:
+            made = Path(scratch, "compiled")
+            made.mkdir()
+            if not compiled_into(made, Path(scratch)):
+                return
             shutil.copytree(made, COMPILED)
-            # A wheel with machine code is one for this kind of machine.
-            dist.Distribution.has_ext_modules = lambda self: True
+        if folder is not None:
+            keep(COMPILED, folder)
+    # A wheel with machine code is one for this kind of machine.
+    dist.Distribution.has_ext_modules = lambda self: True
+
+
+def keep(made: Path, folder: Path) -> None:
+    """Copy what was made to the folder, whole or not at all; where it cannot be, it is not kept."""
+    with suppress(OSError):
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=folder.parent) as scratch:
+            shutil.copytree(made, Path(scratch, "whole")).rename(folder)
 
 
 def compiled_into(folder: Path, scratch: Path) -> bool:

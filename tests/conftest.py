@@ -9,9 +9,17 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-from ptp_symbolic.numeric.simulation.ahead import COMPILE, compile_ahead, wait_until_compiled
-
 os.environ.setdefault("MPLBACKEND", "Agg")
+# Before NumPy is imported. Matrices are small and tests run side by side: threads of BLAS would
+# wait for each other in a loop, three times the computing time of all tests of intervals.
+for library in ("OPENBLAS", "OMP", "MKL"):
+    os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+
+from ptp_symbolic.numeric.simulation.ahead import (  # noqa: E402
+    COMPILE,
+    compile_ahead,
+    wait_until_compiled,
+)
 
 # The first call of a jitted function compiles it: a deadline per example would fail at random.
 settings.register_profile("ptp_symbolic", deadline=None, derandomize=True)

@@ -20,6 +20,8 @@ from rosbags.rosbag1 import Writer as Writer1
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
+pytestmark = pytest.mark.usefixtures("in_this_process")
+
 START = 1_700_000_000_123_456_789  # ns
 PERIOD = 5_000_000  # ns
 ANGLES = np.round(np.linspace(-0.2, 0.6, 60), 4)
@@ -93,6 +95,14 @@ def test_a_bag_is_read_on_the_stamps_of_the_encoder(
     np.testing.assert_allclose(log.inputs[:-1, 0], mean[:-1], atol=1e-6)
     np.testing.assert_allclose(log.steps[0][0], 0.002 + 0.005 * np.arange(60), atol=1e-9)
     np.testing.assert_allclose(log.steps[0][1], VOLTAGES)
+
+
+def test_a_process_of_its_own_reads_the_same(
+    tmp_path: Path, platform: Platform, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.undo()
+    log = read_log(write_bag(tmp_path / "run"), platform)
+    np.testing.assert_allclose(log.outputs[:, 0], ANGLES[1:], atol=1e-12)
 
 
 def test_a_bag_of_ros_1(tmp_path: Path) -> None:

@@ -25,6 +25,8 @@ from tests.data.files_of_formats import (
     write_tdms,
 )
 
+pytestmark = pytest.mark.usefixtures("in_this_process")
+
 
 def assert_same(log: Log) -> None:
     np.testing.assert_allclose(log.time - log.time[0], TIME, atol=1e-6)

@@ -12,7 +12,7 @@ from ptp_symbolic.numeric.diagnose import search as roads
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise
-from ptp_symbolic.numeric.diagnose.proposals import ProposedSet, propose, start_for
+from ptp_symbolic.numeric.diagnose.proposals import ProposedSet, ProposedSets, propose, start_for
 from ptp_symbolic.numeric.diagnose.refits import is_near_noise_floor, over_whole_runs
 from ptp_symbolic.numeric.diagnose.search import floated
 from ptp_symbolic.numeric.diagnose.stepwise import Step, StepwiseSearch
@@ -24,12 +24,18 @@ from tests.diagnose.spring_table import STIFFNESS, spring_table
 STUCK = 1.0002
 
 
-@pytest.fixture
-def stepwise(tmp_path: Path) -> Iterator[StepwiseSearch]:
-    with spring_table(tmp_path) as task:
+@pytest.fixture(scope="module")
+def begun(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Task, Trial, ProposedSets]]:
+    with spring_table(tmp_path_factory.mktemp("spring")) as task:
         proposals = propose(task)
-        task, declared = over_whole_runs(task, proposals)
-        yield StepwiseSearch(task, declared, proposals, carried_noise(task, declared.fit))
+        yield (*over_whole_runs(task, proposals), proposals)
+
+
+@pytest.fixture
+def stepwise(begun: tuple[Task, Trial, ProposedSets]) -> StepwiseSearch:
+    """A search of its own for every test: tests change what it has found and what it may take."""
+    task, declared, proposals = begun
+    return StepwiseSearch(task, declared, proposals, carried_noise(task, declared.fit))
 
 
 def test_what_leaves_only_noise_is_found_without_windows(

@@ -6,7 +6,8 @@ The truth is written by hand and integrated by SciPy, command by command: a gear
 inductance turns a load by a flexible shaft against viscous friction.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -50,12 +51,14 @@ HEADINGS = {
 }
 
 
-def motion(pwm: np.ndarray) -> dict[str, object]:
+@cache
+def motion(pwm: tuple[int, ...]) -> dict[str, Callable[[np.ndarray], np.ndarray]]:
     """The signals as functions of time in s, at rest before the first command acts."""
     t = TRUTH
     ends = HOLD * np.arange(len(pwm) + 1) + INPUT_DELAY
     state, pieces = np.zeros(7), []
-    for volts, begin, end in zip(VOLTS_PER_COUNT * (pwm - ZERO), ends[:-1], ends[1:], strict=True):
+    voltages = VOLTS_PER_COUNT * (np.array(pwm) - ZERO)
+    for volts, begin, end in zip(voltages, ends[:-1], ends[1:], strict=True):
 
         def rates(_, y, volts=volts):
             angle, rate, gear, gear_rate, current, gyro, shunt = y
@@ -107,7 +110,7 @@ def write_logs(
         rng = np.random.default_rng(seed)
         pwm = rng.integers(70, 187, round(DURATION / HOLD))
         pwm[:2] = ZERO
-        true = motion(pwm)
+        true = motion(tuple(pwm))
         time = PERIOD * np.arange(round(DURATION / PERIOD))
 
         def seen(name: str, delay: float, true=true, time=time, rng=rng) -> np.ndarray:

@@ -10,6 +10,7 @@ from ptp_symbolic.numeric.identify.intervals import Estimate, chance_of_scatter,
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
 
+LONG = pytest.mark.long
 FREE = (free_parameter("a", 1.0, -50.0, 50.0),)
 TIME = np.arange(600) / 50.0
 
@@ -31,7 +32,7 @@ def found(rng: np.random.Generator, logs: int, scatter: float, pole: float = 0.0
     return one
 
 
-@pytest.mark.parametrize("logs", [3, 4, 6, 12])
+@pytest.mark.parametrize("logs", [3, *(pytest.param(n, marks=LONG) for n in (4, 6)), 12])
 def test_the_mean_over_logs_that_differ_is_within_its_interval(logs: int) -> None:
     """Blocks within the logs alone held it in 58, 63, 79 and 94 %."""
     rng = np.random.default_rng(9)
@@ -39,8 +40,13 @@ def test_the_mean_over_logs_that_differ_is_within_its_interval(logs: int) -> Non
     assert 0.90 <= np.mean(held) <= 0.99
 
 
-@pytest.mark.parametrize("pole", [0.0, 0.8])
-@pytest.mark.parametrize("logs", [2, 3, 6])
+@pytest.mark.parametrize(
+    ("logs", "pole"),
+    [
+        *((2, 0.0), (3, 0.8), (6, 0.8)),
+        *(pytest.param(*pair, marks=LONG) for pair in ((2, 0.8), (3, 0.0), (6, 0.0))),
+    ],
+)
 def test_logs_that_are_alike_keep_their_narrow_intervals(logs: int, pole: float) -> None:
     """The error of the mean of so many waves, by Student's quantile of some twelve blocks; one set
     of logs in twenty seems to differ.

@@ -51,7 +51,8 @@ def test_a_direction_that_changes_nothing_stays() -> None:
 
 
 @pytest.mark.parametrize(
-    ("runs", "samples", "count"), [(30, 80, 3), (3, 800, 3), (3, 800, 8), (3, 800, 13)]
+    ("runs", "samples", "count"),
+    [(30, 80, 3), (3, 800, 3), pytest.param(3, 800, 8, marks=pytest.mark.long), (3, 800, 13)],
 )
 def test_the_region_holds_the_truth_as_often_as_it_says(
     runs: int, samples: int, count: int

@@ -1,5 +1,6 @@
 """Wheel and source distribution hold what they should, and work outside of the checkout."""
 
+import importlib.util
 import shutil
 import subprocess
 import sys
@@ -135,6 +136,47 @@ def test_commands_run_from_the_wheel_alone(
     )
     assert ran.returncode == 0, ran.stderr
     assert shown in ran.stdout
+
+
+def test_what_one_build_compiled_is_kept_for_the_next_of_the_same_sources(
+    checkout: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    spec = importlib.util.spec_from_file_location(
+        "build_backend", checkout / "scripts" / "build_backend.py"
+    )
+    assert spec is not None and spec.loader is not None
+    build = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(build)
+    here, compiled, made = tmp_path / "checkout", tmp_path / "compiled", []
+    for part in build.DECIDING:
+        (here / part).parent.mkdir(parents=True, exist_ok=True)
+        (here / part).write_bytes(b"") if "." in part else (here / part).mkdir()
+    shutil.copy(checkout / "pyproject.toml", here)
+    kernel = here / "generated" / "model.py"
+
+    def compiler(folder: Path, scratch: Path) -> bool:
+        made.append(kernel.read_text())
+        (folder / "run.code").write_text(f"machine code of {made[-1]}")
+        return made[-1] != "an error"
+
+    monkeypatch.setattr(build, "CHECKOUT", here)
+    monkeypatch.setattr(build, "COMPILED", compiled)
+    monkeypatch.setattr(build, "compiled_into", compiler)
+    monkeypatch.setattr(build.dist.Distribution, "has_ext_modules", lambda self: False)
+    monkeypatch.setenv(build.KEPT, str(tmp_path / "kept"))
+    monkeypatch.delenv("PTP_SYMBOLIC_AHEAD", raising=False)
+    for source in ("a kernel", "another", "a kernel", "another"):
+        kernel.write_text(source)
+        needed = build.compilers()
+        assert any(name.startswith("numba") for name in needed) == (source not in made)
+        build.compile_ahead()
+        assert (compiled / "run.code").read_text() == f"machine code of {source}"
+    assert made == ["a kernel", "another"]
+    for _ in range(2):
+        kernel.write_text("an error")
+        build.compile_ahead()
+        assert not compiled.exists()
+    assert made[2:] == ["an error"] * 2
 
 
 @pytest.mark.long

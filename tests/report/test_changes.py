@@ -93,7 +93,10 @@ def test_a_diagnosis_of_another_platform_is_refused(tmp_path: Path) -> None:
         read_diagnosis(tmp_path / "nothing.json", read_platform("thesis-pan-drive"), shown_of)
 
 
-@pytest.mark.parametrize("pair", [("pan_drive", "thesis-pan-servo"), ("ideal", "full")])
+@pytest.mark.parametrize(
+    "pair",
+    [("pan_drive", "thesis-pan-servo"), pytest.param(("ideal", "full"), marks=pytest.mark.long)],
+)
 def test_the_command_writes_a_document_that_compiles(pair: tuple[str, str], tmp_path: Path) -> None:
     done = CliRunner().invoke(commands, ["report", "changes", *pair, "--out", str(tmp_path)])
     assert done.exit_code == 0, done.output

@@ -28,6 +28,11 @@ def drawn(folder: Path) -> str:
     return done.stdout
 
 
+@pytest.fixture(scope="module")
+def without_settings(tmp_path_factory: pytest.TempPathFactory) -> str:
+    return drawn(tmp_path_factory.mktemp("empty"))
+
+
 @pytest.mark.parametrize(
     "settings",
     [
@@ -37,10 +42,11 @@ def drawn(folder: Path) -> str:
         b"no.such.key: 3\nfont.size = broken\n",
     ],
 )
-def test_a_matplotlibrc_of_the_folder_is_not_read(settings: bytes, tmp_path: Path) -> None:
-    own = drawn(tmp_path)
+def test_a_matplotlibrc_of_the_folder_is_not_read(
+    settings: bytes, without_settings: str, tmp_path: Path
+) -> None:
     (tmp_path / "matplotlibrc").write_bytes(settings)
-    assert drawn(tmp_path) == own
+    assert drawn(tmp_path) == without_settings
 
 
 def test_a_program_that_draws_by_itself_keeps_its_settings() -> None:

@@ -29,6 +29,11 @@ def main() -> None:
     answer = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a library prints is no answer
     _limit_memory([Path(path) for path in request["paths"]])
+    answer_to(request, answer)
+
+
+def answer_to(request: dict[str, Any], answer: BinaryIO) -> None:
+    """Write what is asked for to `answer`, or why the file is refused."""
     name, kind = request["name"], request["kind"]
     try:
         _answer(answer, request)
