@@ -19,6 +19,7 @@ from ptp_symbolic.numeric.diagnose.gain import (
 )
 from ptp_symbolic.numeric.diagnose.groups import Alternative, confusable, is_materially_better
 from ptp_symbolic.numeric.diagnose.noise_floor import leaves_noise_alone, noise_floor_of
+from ptp_symbolic.numeric.diagnose.refits import is_near_noise_floor
 from ptp_symbolic.numeric.diagnose.search import search
 from ptp_symbolic.numeric.diagnose.stepwise import Search
 from ptp_symbolic.numeric.diagnose.structures import (
@@ -177,11 +178,11 @@ def _paired(
     """The fitted structures, and pairs of the best one and each of those one step away from it,
     where one of these leaves noise alone: bristles show beside the shaft that they are behind.
 
-    A best one that does not surely halve the squared error of the declared structure is no half of
-    a pair: many small deviations, not two large ones, are what such logs show.
+    A best one near the noise floor that does not surely halve the squared error of the declared
+    structure is no half of a pair: such logs show many small deviations, not two large ones.
     """
     best = fitted.order[0]
-    if not gain_over(best, fitted.declared).is_most:
+    if is_near_noise_floor(best.trial) and not gain_over(best, fitted.declared).is_most:
         return fitted, ()
     declared = next(r for r in every if (r.keys, r.provides) == (best.keys, best.provides))
     there = variants.extended(declared.platform, (), best.trial.values, ())
