@@ -132,7 +132,8 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
         untried = {**untried, **{key: why for each in every for key in each.keys}}
         is_cut_short = is_stopped or terms.found.is_cut_short
         return Choice(terms.outcome, terms.outcome, (), untried, is_cut_short)
-    fitted = fit_structures(platform, every, logs)
+    found = terms.found.chosen
+    fitted = fit_structures(platform, every, logs, found.values if found.candidates else None)
     if not terms.is_noise_alone and not fitted.quiet and not logs.allowance.is_over:
         fitted = _over_windows(platform, fitted, terms, logs)
         if not fitted.quiet and fitted.order and not logs.allowance.is_over:
@@ -158,13 +159,16 @@ def _platforms(every: Sequence[Rebuilt]) -> dict[tuple[tuple[str, ...], frozense
 
 def _over_windows(platform: Platform, fitted: Fitted, terms: Searched, logs: Logs) -> Fitted:
     """The structures led over windows: beside the effects that were found where these surely halve
-    the squared error of the declared structure, because others show beside them only.
+    the squared error of the declared structure, because others show beside them only. A delay is
+    not among them: it makes up for the lag that a structure would explain.
     """
     trial = terms.found.chosen
     declared = on_runs_of(terms.found.task, terms.found.declared, trial.fit.runs)
-    if all(c.is_declared_value for c in trial.candidates) or not gain(trial, declared).is_most:
+    late = {trial.fit.model.parameter_names[k] for k in trial.fit.model.input_delays if k >= 0}
+    kept = tuple(c for c in trial.candidates if not late & set(c.parameters))
+    if all(c.is_declared_value for c in kept) or not gain(trial, declared).is_most:
         return fitted.over_windows_too(logs)
-    beside = with_effects(platform, trial)
+    beside = with_effects(platform, replace(trial, candidates=kept))
     own = {s.keys for s in fitted.every}
     every = [rebuilt for rebuilt in structures(beside)[0] if rebuilt.keys in own]
     found = fit_structures(beside, every, logs)
@@ -292,7 +296,7 @@ def _chosen(
                 accepted.append(named)
                 continue
             why = "reduces the error of the validation runs too little, or not significantly"
-        elif quiet and terms.verdict.final.candidates:
+        if quiet and terms.verdict.final.candidates:
             against = gain(without, final)
             if not is_materially_better(against, 1, structure.task.material):
                 candidates = (*structure.added, *final.candidates)

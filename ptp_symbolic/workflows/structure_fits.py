@@ -82,17 +82,26 @@ class Fitted:
         )
 
 
-def fit_structures(platform: Platform, every: Sequence[Rebuilt], logs: Logs) -> Fitted:
+def fit_structures(
+    platform: Platform,
+    every: Sequence[Rebuilt],
+    logs: Logs,
+    known: Mapping[str, float] | None = None,
+) -> Fitted:
     """Fit a platform and `every` structure one step away from it: a few iterations each from their
     starts, the better half to the end of whole runs.
+
+    They are started beside the parameters `known` from the best fit so far, else beside those of
+    the platform's: where a delay makes up for a lag, these are the right ones, and the platform's
+    alone are not.
     """
     logs.progress(f"fitting {len(every)} structures one step away")
     alone = _begun(platform, None, logs, {}).finished()
-    known = alone.fitted.trial.values
+    beside = alone.fitted.trial.values if known is None else known
 
     def one(rebuilt: Rebuilt) -> Begun | str:
         try:
-            return _begun(rebuilt.platform, rebuilt, logs, known)
+            return _begun(rebuilt.platform, rebuilt, logs, beside)
         except InputError as error:
             return f"the platform with it cannot be fitted: {error}"
 

@@ -2,6 +2,8 @@
 matrix exponential.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.linalg import expm
@@ -112,3 +114,39 @@ def test_the_start_goes_with_the_parameters_and_the_rate() -> None:
         z = np.eye(len(window.unknowns))[index] * 1e-3
         by = (at({}, window.guess + z) - at({}, window.guess - z)) / 2e-3
         assert s[current, len(names) + index] == pytest.approx(by, rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize(("lag", "within"), [(0.01, 0.05), (0.06, 0.2)])
+def test_a_window_of_a_turning_joint_begins_ahead_of_its_filtered_encoder(
+    lag: float, within: float
+) -> None:
+    """The filter is integrated by a matrix exponential with the motion; its encoder shows what it
+    is behind, and a window that begins there has the joint ahead by it.
+    """
+    period, samples = 0.005, 800
+    voltage, flow = 8.0 + 3.0 * np.sin(1.7 * period * np.arange(samples)), np.zeros((5, 5))
+    flow[0, 1] = 1.0
+    flow[1, 1:3] = -VALUES["b_pan"] / LOAD, TORQUE / LOAD
+    flow[2, 1:3] = -TORQUE / VALUES["L_pan"], -VALUES["R_pan"] / VALUES["L_pan"]
+    flow[2, 4] = 1.0 / VALUES["L_pan"]
+    flow[3, [1, 3]] = 1.0, -1.0 / lag
+    step, state = expm(period * flow), np.zeros((samples, 4))
+    for k in range(samples - 1):
+        state[k + 1] = (step @ [*state[k], voltage[k]])[:4]
+    filtered = replace(
+        PLATFORM, effects=(*EFFECTS, EffectDeclaration("measurement_lag", "pan", None))
+    )
+    model, time = emission.emit(filtered), period * np.arange(samples)
+    reading = np.rint((state[:, :1] - state[:, 3:]) / COUNT) * COUNT
+    (run,) = prepare_runs(model, filtered, [Log("run", time, voltage[:, None], reading)])
+    p = model.parameter_vector({**VALUES, "t_lag_pan": lag})
+    names, column = list(model.state_names), list(model.parameter_names).index("t_lag_pan")
+    for window in split_run(model, run, 0.25 * period * samples)[1:]:
+        at, z = int(np.searchsorted(time, window.time[0])), window.guess
+        rate = [u.name for u in window.unknowns].index("omega_pan")
+        z[rate] = state[at, 1] - window.start[names.index("omega_pan")]
+        x, s = start_state(model, window, p, z, np.array([column]))
+        behind = x[names.index("lag_pan")]
+        assert behind == pytest.approx(state[at, 3], rel=within)
+        assert x[names.index("theta_pan")] - behind == pytest.approx(reading[at, 0], abs=2 * COUNT)
+        assert s[names.index("theta_pan"), 0] == pytest.approx(state[at, 1], rel=within)

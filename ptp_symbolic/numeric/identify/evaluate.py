@@ -51,9 +51,11 @@ def settle(
     columns: NDArray[np.int64],
 ) -> None:
     """Put the hidden states of a window that forget all but the share SAME of what they were within
-    FORGOTTEN into the state x [n] with which it begins, at p [np], and their derivatives by the
-    parameters `columns` [nc] and by the start unknowns [nz] into its tangents s [n, nc + nz]. Their
-    own laws are linear in them. A run that is no window begins as it does.
+    FORGOTTEN, and those that a reading depends on, into the state x [n] with which it
+    begins, at p [np], and their derivatives by the parameters `columns` [nc] and by the start
+    unknowns [nz] into its tangents s [n, nc + nz]. Their own laws are linear in them. Angles move
+    so that sensors go on showing what they did: behind a filter an encoder that turns lags. A run
+    that is no window begins as it does.
     """
     if run.before is None or not (hidden := _hidden(model, run)):
         return
@@ -61,11 +63,18 @@ def settle(
     m, dx = np.zeros(len(model.mode_names)), np.zeros(n)
     model.module.initial_modes(t, x, u, p, m)
     fx = model.derivatives(t, x, u, p, m).fx
-    fast = [k for k in hidden if fx[k, k] * FORGOTTEN < np.log(SAME)]
+    slopes = _reading_slopes(model, run, p, x)
+    of_sensors = np.any(slopes[list(run.outputs)], axis=0) & (np.diag(fx) < 0.0)
+    fast = [k for k in hidden if of_sensors[k] or fx[k, k] * FORGOTTEN < np.log(SAME)]
     if not fast:
         return
     model.module.mode_derivative(t, x, u, p, m, dx)
-    x[fast] -= np.linalg.solve(fx[fast][:, fast], dx[fast])
+    moved, earlier = -np.linalg.solve(fx[fast][:, fast], dx[fast]), s[fast].copy()
+    x[fast] += moved
+    encoders = _encoders(model, run)
+    for column, angles in encoders:
+        by_state = slopes[run.outputs[column]]
+        x[angles] -= by_state[fast] @ moved / by_state[angles[0]]
     if not s.shape[1]:
         return
     there = model.derivatives(t, x, u, p, m)
@@ -73,6 +82,29 @@ def settle(
     change = there.fx[fast] @ s
     change[:, : len(columns)] += there.fp[fast][:, columns]
     s[fast] = -np.linalg.solve(own, change)
+    for column, angles in encoders:
+        by_state = slopes[run.outputs[column]]
+        s[angles] -= by_state[fast] @ (s[fast] - earlier) / by_state[angles[0]]
+
+
+def _reading_slopes(model: Model, run: Run, p: FloatArray, x: FloatArray) -> FloatArray:
+    """Derivatives [signals, n] of all readings by the state x [n] at p [np]."""
+    signals = len(model.output_names)
+    yx, yp = np.zeros((signals, len(x))), np.zeros((signals, len(p)))
+    model.module.output_jacobian(run.time[0], x, run.held_inputs[0], p, yx, yp)
+    return yx
+
+
+def _encoders(model: Model, run: Run) -> list[tuple[int, list[int]]]:
+    """Columns of `run` that are encoders, each with the states that are its angle, at the joint and
+    at the gear.
+    """
+    names, found = list(model.state_names), []
+    for column, signal in enumerate(run.signals):
+        if signal.startswith("theta_"):
+            both = (signal, f"theta_gear_{signal.removeprefix('theta_')}")
+            found.append((column, [names.index(name) for name in both if name in names]))
+    return found
 
 
 def _hidden(model: Model, run: Run) -> tuple[int, ...]:
@@ -226,12 +258,8 @@ def _put_behind_sensors(
     """
     n, signals = len(x), len(model.output_names)
     y, yx, yp = np.zeros(signals), np.zeros((signals, n)), np.zeros((signals, len(p)))
-    for column, signal in enumerate(run.signals):
-        if not signal.startswith("theta_"):
-            continue
-        axis = signal.removeprefix("theta_")
-        names = [name for name in (signal, f"theta_gear_{axis}") if name in model.state_names]
-        angle_states, shown = [model.state_names.index(name) for name in names], run.outputs[column]
+    for column, angle_states in _encoders(model, run):
+        shown = run.outputs[column]
         for _ in range(ROUNDS):
             model.module.outputs(run.time[0], x, run.held_inputs[0], p, y)
             error = run.measured[0, column] - y[shown]
