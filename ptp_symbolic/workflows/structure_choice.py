@@ -179,13 +179,16 @@ def _over_windows(platform: Platform, fitted: Fitted, terms: Searched, logs: Log
 def _paired(
     fitted: Fitted, every: Sequence[Rebuilt], logs: Logs
 ) -> tuple[Fitted, Sequence[Rebuilt]]:
-    """The fitted structures, and pairs of the best one and each of those one step away from it,
-    where one of these leaves noise alone: bristles show beside the shaft that they are behind.
+    """The fitted structures, and pairs of the best one, or the simplest that it contains, and each of
+    those one step away from it, where one of these leaves noise alone: bristles show beside the
+    shaft that they are behind.
 
     A best one near the noise floor that does not surely halve the squared error of the declared
     structure is no half of a pair: such logs show many small deviations, not two large ones.
     """
     best = fitted.order[0]
+    contained = [s for s in fitted.order if s.provides < best.provides]
+    best = min(contained, key=lambda s: len(s.provides), default=best)
     if is_near_noise_floor(best.trial) and not gain_over(best, fitted.declared).is_most:
         return fitted, ()
     declared = next(r for r in every if (r.keys, r.provides) == (best.keys, best.provides))
