@@ -1,5 +1,6 @@
 """Emitted modules as numba compiles them: nothing is allocated, single precision stays single."""
 
+import ast
 import math
 import re
 from functools import cache
@@ -13,6 +14,7 @@ from numba.core.runtime import _nrt_python, rtsys
 import ptp_symbolic
 from ptp_symbolic.symbolic.program.kernel import Kernel
 from ptp_symbolic.symbolic.targets.numba.language import FLOAT
+from ptp_symbolic.symbolic.targets.numba.literals import INNER_WIDTH, UNBROKEN, WIDTH, tuple_text
 from ptp_symbolic.symbolic.targets.numba.module import written
 from tests.targets.machines import NAMES, Sampled, program_of
 from tests.targets.test_every_target import exact
@@ -116,3 +118,16 @@ def test_single_precision_is_that_of_the_equations(name: str) -> None:
             scale = max(1.0, *map(abs, truth))
             worst = max(abs(float(a) - b) for a, b in zip(found, truth, strict=True))
             assert worst <= ROUNDING * scale and math.isfinite(worst), name
+
+
+@pytest.mark.parametrize("count", range(1, 30))
+def test_a_statement_with_many_targets_is_broken_where_it_may_be(count: int) -> None:
+    """Python has no line that begins with an equals sign: fifteen guards of a joint with slip
+    elements ended up so.
+    """
+    call = f"{UNBROKEN}={UNBROKEN}guard_values({', '.join(f'given_{k}' for k in range(count))})"
+    text = tuple_text("", [f"g[{k}]" for k in range(count)], INNER_WIDTH, call)
+    (statement,) = ast.parse(text).body
+    assert isinstance(statement, ast.Assign) and isinstance(statement.targets[0], ast.Tuple)
+    assert len(statement.targets[0].elts) == count
+    assert all(len(line) <= WIDTH for line in text.splitlines())

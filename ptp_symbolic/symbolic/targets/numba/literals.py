@@ -87,7 +87,7 @@ def tuple_text(before: str, items: Iterable[str], width: int, after: str = "") -
     found = list(items)
     bare = f"{before}{', '.join(found)}{after}"
     if len(found) > 1 and len(bare) <= width:
-        return bare
+        return bare.replace(UNBROKEN, " ")
     return _wrapped(f"{before}({listed(found)}){after}", width, "", "    ")
 
 

@@ -118,7 +118,8 @@ def _function(kernel: Kernel, words: Mapping[str, str], language: Language) -> s
         entries = [f"g[{k}]" for k in range(*kernel.vectors.shape("g"))]
         given = with_modes(STATE_AND_MODES, kernel.vectors.m)
         rows += _unpacked_modes(kernel)
-        rows.append(tuple_text("", entries, INNER_WIDTH, f" = guard_values({', '.join(given)})"))
+        call = f"{UNBROKEN}={UNBROKEN}guard_values({', '.join(given)})"
+        rows.append(tuple_text("", entries, INNER_WIDTH, call))
         return function_text(COMPILED, kernel.name, kernel.arguments, rows)
     rows += [IMPLIED_MODES] if kernel.finds_modes else ()
     rows += _opening(kernel, language)
