@@ -179,8 +179,8 @@ def _over_windows(platform: Platform, fitted: Fitted, terms: Searched, logs: Log
 def _paired(
     fitted: Fitted, every: Sequence[Rebuilt], logs: Logs
 ) -> tuple[Fitted, Sequence[Rebuilt]]:
-    """The fitted structures, and pairs of the best one, or the simplest that it contains, and each of
-    those one step away from it, where one of these leaves noise alone: bristles show beside the
+    """The fitted structures, and pairs of the best one, or the simplest that it contains, and each
+    of those one step away from it, where one of these leaves noise alone: bristles show beside the
     shaft that they are behind.
 
     A best one near the noise floor that does not surely halve the squared error of the declared

@@ -150,3 +150,13 @@ def test_a_window_of_a_turning_joint_begins_ahead_of_its_filtered_encoder(
         assert behind == pytest.approx(state[at, 3], rel=within)
         assert x[names.index("theta_pan")] - behind == pytest.approx(reading[at, 0], abs=2 * COUNT)
         assert s[names.index("theta_pan"), 0] == pytest.approx(state[at, 1], rel=within)
+
+
+def test_a_log_that_begins_in_motion_begins_with_its_current() -> None:
+    voltage, state = motion(0.005, 400)
+    model, late = emission.emit(PLATFORM), slice(150, 400)
+    log = Log("late", 0.005 * np.arange(250), voltage[late, None], state[late, :1])
+    (run,) = prepare_runs(model, PLATFORM, [log])
+    assert "omega_pan" in [u.name for u in run.unknowns]
+    x, _ = start_state(model, run, model.parameter_vector(VALUES), run.guess, np.zeros(0, np.int64))
+    assert x[list(model.state_names).index("i_pan")] == pytest.approx(state[150, 2], rel=0.02)

@@ -55,11 +55,13 @@ def settle(
     begins, at p [np], and their derivatives by the parameters `columns` [nc] and by the start
     unknowns [nz] into its tangents s [n, nc + nz]. Their own laws are linear in them. Angles move
     so that sensors go on showing what they did: behind a filter an encoder that turns lags. A run
-    that is no window begins as it does.
+    that is no window and begins at rest begins as it does.
     """
-    if run.before is None or not (hidden := _hidden(model, run)):
+    moves = any(unknown.name.startswith("omega_") for unknown in run.unknowns)
+    if (run.before is None and not moves) or not (hidden := _hidden(model, run)):
         return
-    n, t, u = len(x), float(run.time[0]), run.before
+    u = run.held_inputs[0] if run.before is None else run.before
+    n, t = len(x), float(run.time[0])
     m, dx = np.zeros(len(model.mode_names)), np.zeros(n)
     model.module.initial_modes(t, x, u, p, m)
     fx = model.derivatives(t, x, u, p, m).fx
