@@ -14,7 +14,7 @@ from numba import njit, types
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.along_motion import NEXT_TO_NONE
-from ptp_symbolic.numeric.identify.constants import FORGOTTEN, ROUNDING, ROUNDS, SAME
+from ptp_symbolic.numeric.identify.constants import FORGOTTEN, NEARBY, ROUNDING, ROUNDS, SAME
 from ptp_symbolic.numeric.identify.evidence import Deferred, refuse_unstored
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.runtime.element_layout import contact_guards
@@ -57,8 +57,7 @@ def settle(
     so that sensors go on showing what they did: behind a filter an encoder that turns lags. A run
     that is no window and begins at rest begins as it does.
     """
-    moves = any(unknown.name.startswith("omega_") for unknown in run.unknowns)
-    if (run.before is None and not moves) or not (hidden := _hidden(model, run)):
+    if (run.before is None and not _moves(model, run)) or not (hidden := _hidden(model, run)):
         return
     u = run.held_inputs[0] if run.before is None else run.before
     n, t = len(x), float(run.time[0])
@@ -87,6 +86,15 @@ def settle(
     for column, angles in encoders:
         by_state = slopes[run.outputs[column]]
         s[angles] -= by_state[fast] @ (s[fast] - earlier) / by_state[angles[0]]
+
+
+def _moves(model: Model, run: Run) -> bool:
+    """Whether a run surely begins in motion: from rest, the rate at its start is as uncertain as
+    it is large.
+    """
+    rates = [u for u in run.unknowns if u.name.startswith("omega_")]
+    starts = [run.start[model.state_names.index(u.name)] for u in rates]
+    return any(abs(r) > NEARBY * u.sigma for r, u in zip(starts, rates, strict=True))
 
 
 def _reading_slopes(model: Model, run: Run, p: FloatArray, x: FloatArray) -> FloatArray:
