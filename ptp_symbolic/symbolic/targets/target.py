@@ -4,6 +4,8 @@ import json
 from collections.abc import Callable, Iterable, Mapping
 from typing import Protocol, runtime_checkable
 
+from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.mechanics.kinematics import place_of
 from ptp_symbolic.symbolic.program.program import Program
 from ptp_symbolic.symbolic.targets.words import WORDS
 
@@ -47,6 +49,26 @@ def effects_of(program: Program) -> list[str]:
         f"{placed.effect.id}@{placed.axis}" if placed.axis else placed.effect.id
         for placed in program.equations.effects
     ]
+
+
+def state_units(equations: Equations) -> dict[str, str]:
+    """Units of the states by name, in their order."""
+    units = {str(q): equations.unit("rad") for q in equations.coordinates}
+    units |= {str(w): equations.unit("rad/s") for w in equations.rates}
+    units |= {state.name: state.unit for state in equations.extra_states}
+    return {str(symbol): units[str(symbol)] for symbol in equations.state_symbols}
+
+
+def state_meanings(equations: Equations) -> dict[str, str]:
+    """Meanings of the states by name."""
+    found = {}
+    for q, w in zip(equations.coordinates, equations.rates, strict=True):
+        place = place_of(q)
+        axis = place.removeprefix("gear_")
+        where = f"{axis} joint" if place == axis else f"{axis} gear output"
+        found[str(q)] = equations.worded(f"angle of the {where}")
+        found[str(w)] = f"rate of {q}"
+    return found | {state.name: state.meaning for state in equations.extra_states}
 
 
 def late_inputs(program: Program) -> list[str]:

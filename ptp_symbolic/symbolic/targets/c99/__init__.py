@@ -6,11 +6,19 @@ from importlib import resources
 
 from ptp_symbolic.symbolic.program.kernel import Assignment, Entry, Kernel
 from ptp_symbolic.symbolic.program.program import Program
+from ptp_symbolic.symbolic.program.term_names import vocabulary
 from ptp_symbolic.symbolic.targets.c99.language import DOUBLE, FLOAT
 from ptp_symbolic.symbolic.targets.printing import Language
-from ptp_symbolic.symbolic.targets.target import effects_of, in_lines, remarks_of_functions
+from ptp_symbolic.symbolic.targets.target import (
+    effects_of,
+    in_lines,
+    remarks_of_functions,
+    state_meanings,
+    state_units,
+)
 
 WIDTH = 96
+NAMED_BY_TABLES = ("dx", "y", "c", "bounds", "margin")
 UNBROKEN = "\N{NO-BREAK SPACE}"  # in what must stay on one line
 
 
@@ -44,21 +52,19 @@ C99_DOUBLE, C99_FLOAT = C99("c99", DOUBLE), C99("c99-float", FLOAT)
 def header(program: Program, name: str, language: Language) -> str:
     """The header: sizes, names and units, the machine between two steps, the functions."""
     large, counts, equations = name.upper(), program.operations, program.equations
-    tables = _tables(program)
+    tables, words = _tables(program), vocabulary(program.computed).targets
     text = [
         f"/* {_comment(equations.title)}: equations of motion.",
         "",
         f"   Effects: {_comment(', '.join(effects_of(program)))}.",
         f"   Operations of the vector field: {counts.written}, of which {counts.each} at every call"
-        " where prepare() does the others",
-        "   once per parameter set. A step evaluates it twice and one Jacobian, and where modes"
-        " change",
-        "   up to 30 times more, once for each set of modes that it tries.",
+        " where prepare() does the others once per parameter set. A step evaluates it twice and one"
+        " Jacobian, and where modes change up to 30 times more, once for each set of modes that it"
+        " tries.",
         "",
         "   All numbers are in SI units. Inputs are those that act: one that is late by a parameter"
-        " is",
-        "   delayed by the caller. Matrices are stored by rows; derivatives that are zero for any",
-        "   argument are not written, so clear arrays once before the first call. */",
+        " is delayed by the caller. Matrices are stored by rows; derivatives that are zero for any"
+        " argument are not written, so clear arrays once before the first call. */",
         f"#ifndef {large}_H",
         f"#define {large}_H",
         "",
@@ -76,10 +82,7 @@ def header(program: Program, name: str, language: Language) -> str:
         f"    {large}_NO_PERIOD = 6  /* a sampling time is not positive */",
         "};",
         "",
-        *(
-            f"/* {meaning}: {_comment(', '.join(entries) or 'none')}. */"
-            for meaning, entries in tables.items()
-        ),
+        *tables,
         f"extern const char *const {name}_state_names[];",
         f"extern const char *const {name}_input_names[];",
         f"extern const char *const {name}_output_names[];",
@@ -90,15 +93,18 @@ def header(program: Program, name: str, language: Language) -> str:
         "",
     ]
     for kernel in _kernels(program):
-        text += [*_prototype_comment(kernel), f"void {_signature(kernel, name, language)};", ""]
+        text += [
+            *_prototype_comment(kernel, words),
+            f"void {_signature(kernel, name, language)};",
+            "",
+        ]
     if program.has_modes:
         text += [
             "/* Find the modes that a state implies. */",
-            f"void {name}_initial_modes({name}_real t, const {name}_real *x, const {name}_real *u,",
-            f"    const {name}_real *p, {name}_real *m);",
+            _prototype(f"void {name}_initial_modes", *_state_arguments(name), f"{name}_real *m"),
             "",
         ]
-    text += [_machine(program, name), "#endif", ""]
+    text += [*_machine(program, name), "#endif", ""]
     return "\n".join(_filled(text))
 
 
@@ -200,15 +206,22 @@ def _signature(kernel: Kernel, name: str, language: Language) -> str:
     return f"{name}_{kernel.name}({', '.join(each.replace(' ', UNBROKEN) for each in given)})"
 
 
-def _prototype_comment(kernel: Kernel) -> list[str]:
+def _prototype_comment(kernel: Kernel, words: Mapping[str, str]) -> list[str]:
+    """What a function does; shapes of its arrays, and what the entries of a vector are that no
+    table lists.
+    """
     shapes = []
     for argument in kernel.arguments:
         if argument != "t":
-            shape = ", ".join(map(str, kernel.vectors.shape(argument)))
-            shapes.append(f"{argument} [{shape}]")
+            shape = f",{UNBROKEN}".join(map(str, kernel.vectors.shape(argument)))
+            shapes.append(f"{argument}{UNBROKEN}[{shape}]")
+    said = f"{_comment(kernel.doc)} {'; '.join(shapes)}."
+    for array in (a for a in kernel.written if a not in NAMED_BY_TABLES):
+        names = [words.get(f"{array}[{k}]", "") for k in range(kernel.vectors.shape(array)[0])]
+        said += f" {array}: {', '.join(names)}." if names and all(names) else ""
     optional = ", then ".join(kernel.optional)
     note = f" Pass 0 for what is not asked for: {optional}." if optional else ""
-    return [f"/* {_comment(kernel.doc)} {'; '.join(shapes)}.{note} */"]
+    return [f"/* {said}{note} */"]
 
 
 def _sizes(program: Program) -> dict[str, int]:
@@ -259,7 +272,7 @@ def _layout(program: Program, events: bool) -> list[str]:
     return [*lines, ""]
 
 
-def _machine(program: Program, name: str) -> str:
+def _machine(program: Program, name: str) -> list[str]:
     """The record of a machine between two steps, and the functions that use it."""
     sizes, real = _sizes(program), f"{name}_real"
     n = sizes["STATES"]
@@ -287,53 +300,68 @@ def _machine(program: Program, name: str) -> str:
         fields.append(array(real, "sampled", 3 * sizes["SAMPLERS"] + sizes["UPDATES"]))
         fields += [array("double", word, sizes["SAMPLERS"]) for word in ("due", "count")]
         fields.append(array("int", "armed", sizes["SAMPLERS"]))
+    machine, state = f"{name}_machine *s", f"{real} *x"
+    u, u_end, p = (f"const {real} *{a}" for a in ("u", "u_end", "p"))
     sampling = [
         "/* Run the samplers that are due at t, with inputs as after t. Instants: `due` of the"
         " machine. */",
-        f"void {name}_sample_now({name}_machine *s, double t, {real} *x, const {real} *u,",
-        f"    const {real} *p);",
+        _prototype(f"void {name}_sample_now", machine, "double t", state, u, p),
         "",
     ]
-    return "\n".join(
-        [
-            "/* A machine between two steps, and its room to work; nothing is allocated. */",
-            "typedef struct {",
-            *fields,
-            f"}} {name}_machine;",
-            "",
-            "/* Prepare the parameters p and find consistent modes of the state x at t. Call it"
-            " again when p",
-            "   changes. Returns a status. */",
-            f"int {name}_begin({name}_machine *s, {real} t, {real} *x, const {real} *u,",
-            f"    const {real} *p);",
-            "",
-            "/* Take x from t to t + h in one step; inputs u at t and u_end at its end (the same"
-            " where they are",
-            "   held). Friction and contact are solved implicitly. Returns a status. */",
-            f"int {name}_step({name}_machine *s, {real} t, {real} h, {real} *x, const {real} *u,",
-            f"    const {real} *u_end, const {real} *p);",
-            "",
-            *(sampling if sizes["SAMPLERS"] else []),
-            "/* Take x from t to t_end in equal steps of at most `longest`, inputs held; samplers"
-            " run when they",
-            "   are due. Returns a status. */",
-            f"int {name}_advance({name}_machine *s, double t, double t_end, double longest,"
-            f" {real} *x,",
-            f"    const {real} *u, const {real} *p);",
-            "",
-        ]
-    )
+    return [
+        "/* A machine between two steps, and its room to work; nothing is allocated. */",
+        "typedef struct {",
+        *fields,
+        f"}} {name}_machine;",
+        "",
+        "/* Prepare the parameters p and find consistent modes of the state x at t. Call it again"
+        " when p changes. Returns a status. */",
+        _prototype(f"int {name}_begin", machine, f"{real} t", state, u, p),
+        "",
+        "/* Take x from t to t + h in one step; inputs u at t and u_end at its end (the same where"
+        " they are held). Friction and contact are solved implicitly. Returns a status. */",
+        _prototype(f"int {name}_step", machine, f"{real} t", f"{real} h", state, u, u_end, p),
+        "",
+        *(sampling if sizes["SAMPLERS"] else []),
+        "/* Take x from t to t_end in equal steps of at most `longest`, inputs held; samplers run"
+        " when they are due. Returns a status. */",
+        _prototype(
+            f"int {name}_advance",
+            machine,
+            *("double t", "double t_end", "double longest"),
+            *(state, u, p),
+        ),
+        "",
+    ]
 
 
-def _tables(program: Program) -> dict[str, list[str]]:
-    """Entries of the arrays with their units, by what they are."""
+def _state_arguments(name: str) -> tuple[str, ...]:
+    """The time, the state, inputs and parameters, as arguments that are read."""
+    return (f"{name}_real t", *(f"const {name}_real *{a}" for a in "xup"))
+
+
+def _prototype(head: str, *arguments: str) -> str:
+    return f"{head}({', '.join(a.replace(' ', UNBROKEN) for a in arguments)});"
+
+
+def _tables(program: Program) -> list[str]:
+    """Comments that say of the entries of arrays what they are, with their units."""
     equations = program.equations
-    return {
-        "States x": [str(s) for s in equations.state_symbols],
-        "Inputs u": [f"{i.name} [{i.unit}]" for i in equations.inputs],
+    units, meanings = state_units(equations), state_meanings(equations)
+    tables = {
+        "States x": [f"{name} [{unit}]: {meanings[name]}" for name, unit in units.items()],
+        "Inputs u": [f"{i.name} [{i.unit}]: {i.meaning}" for i in equations.inputs],
         "Outputs y": [f"{n} [{unit}]" for n, unit, _ in equations.outputs],
-        "Modes m": list(program.vectors.m),
+        "Modes m (slide -1, 0 sticking, 1; side -1, 0, 1; active 0, 1)": list(program.vectors.m),
+        "Parameters p": [f"{p.name} [{p.unit}]: {p.meaning}" for p in equations.parameters],
+        "DOMAIN, bounds of states": [f"{own.state}: {own.meaning}" for own in equations.limits],
+        "REQUIREMENTS of parameters": [own.rule for own in equations.requirements],
     }
+    lines = []
+    for table, entries in tables.items():
+        rows = [f"   {k:3d} {_comment(entry)}" for k, entry in enumerate(entries)]
+        lines += [f"/* {table}:", *rows[:-1], f"{rows[-1]} */"] if rows else []
+    return lines
 
 
 def _names(array: str, names: Iterable[str]) -> list[str]:

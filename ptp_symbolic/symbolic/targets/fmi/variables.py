@@ -8,9 +8,10 @@ import sympy as sp
 
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.effect_interface.place import slide
-from ptp_symbolic.symbolic.mechanics.kinematics import TIME, place_of
+from ptp_symbolic.symbolic.mechanics.kinematics import TIME
 from ptp_symbolic.symbolic.program.kernel import Entry
 from ptp_symbolic.symbolic.program.program import Program
+from ptp_symbolic.symbolic.targets.target import state_meanings, state_units
 
 FIXED, TUNABLE, CONTINUOUS, DISCRETE = "fixed", "tunable", "continuous", "discrete"
 # Enumerations of the modes: values and what they mean.
@@ -83,7 +84,7 @@ def variables(program: Program) -> Variables:
     at_indicators = at_parameters + len(equations.parameters)
     needs_field, needs_outputs = _dependencies(program, at_inputs)
     same = {str(e) for _, _, e in equations.outputs}
-    units, meanings = state_units(equations), _meanings(equations)
+    units, meanings = state_units(equations), state_meanings(equations)
     nominal, nominal_outputs = nominals(equations)
     initial = {state.name: float(state.initial) for state in equations.extra_states}
     states = tuple(
@@ -255,7 +256,7 @@ def _mode_meaning(name: str, kind: str) -> str:
         "Side": "face that is touched",
         "Activity": "whether the face that is touched transmits force",
     }[kind]
-    return f"{what}, {name.partition('_')[2]}"
+    return f"{name.partition('_')[2]}: {what}"
 
 
 def _dependencies(
@@ -278,22 +279,6 @@ def _dependencies(
     for row, own in direct.items():
         outputs[row] = (*outputs.get(row, ()), *own)
     return field, outputs
-
-
-def state_units(equations: Equations) -> dict[str, str]:
-    """Units of the states by name."""
-    units = {str(q): equations.unit("rad") for q in equations.coordinates}
-    units |= {str(w): equations.unit("rad/s") for w in equations.rates}
-    return units | {state.name: state.unit for state in equations.extra_states}
-
-
-def _meanings(equations: Equations) -> dict[str, str]:
-    """Meanings of the states by name."""
-    word = equations.worded
-    found = {str(q): word(f"angle of {place_of(q)}") for q in equations.coordinates}
-    for q, w in zip(equations.coordinates, equations.rates, strict=True):
-        found[str(w)] = f"rate of {q}"
-    return found | {state.name: state.meaning for state in equations.extra_states}
 
 
 def per_second(unit: str) -> str:

@@ -13,7 +13,7 @@ from ptp_symbolic.symbolic.targets.numba.literals import (
     numbers_text,
 )
 from ptp_symbolic.symbolic.targets.printing import Language
-from ptp_symbolic.symbolic.targets.target import literal
+from ptp_symbolic.symbolic.targets.target import literal, state_units
 
 
 def metadata_text(
@@ -59,7 +59,7 @@ def _signal_lines(equations: Equations) -> list[str]:
     return [
         named_tuple_text("AXES", map(literal, equations.axes)),
         named_tuple_text("STATE_NAMES", (f'"{s}"' for s in equations.state_symbols)),
-        named_tuple_text("STATE_UNITS", map(literal, _state_units(equations))),
+        named_tuple_text("STATE_UNITS", map(literal, state_units(equations).values())),
         named_tuple_text("STATE_INITIAL", map(repr, _state_initial(equations))),
         named_tuple_text("INPUT_NAMES", (f'"{i.name}"' for i in equations.inputs)),
         named_tuple_text("INPUT_UNITS", (f'"{i.unit}"' for i in equations.inputs)),
@@ -125,13 +125,6 @@ def _search(p: Parameter) -> str:
         lock,
     ]
     return f"({', '.join(fields)})"
-
-
-def _state_units(equations: Equations) -> list[str]:
-    units = {str(q): equations.unit("rad") for q in equations.coordinates}
-    units.update({str(w): equations.unit("rad/s") for w in equations.rates})
-    units.update({state.name: state.unit for state in equations.extra_states})
-    return [units[str(symbol)] for symbol in equations.state_symbols]
 
 
 def _state_initial(equations: Equations) -> list[float]:

@@ -32,7 +32,8 @@ from ptp_symbolic.symbolic.targets.printing import Language
 from ptp_symbolic.symbolic.targets.target import late_inputs
 
 ARGUMENTS = (
-    "# Arguments: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS (SI);\n"
+    "# Arguments, in SI: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of"
+    " PARAMETERS;\n"
     "# modes m as MODE_NAMES; c as `prepare` writes it. Lengths and shapes are in brackets.\n"
 )
 MATRICES = {
