@@ -18,7 +18,7 @@ from ptp_symbolic.numeric.diagnose.proposals import Proposals, placed_by_rows, p
 from ptp_symbolic.numeric.diagnose.refits import polished
 from ptp_symbolic.numeric.diagnose.starts import from_rows
 from ptp_symbolic.numeric.diagnose.trial import Task, fitted, halving, restarted
-from ptp_symbolic.numeric.experiment.contender import Contender, from_fit, without_logs
+from ptp_symbolic.numeric.experiment.machine import Contender, from_fit, without_logs
 from ptp_symbolic.numeric.identify.constants import ROUNDING
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.run import Run
