@@ -118,7 +118,7 @@ def device_code(name: str, capability: tuple[int, int]) -> str:
     numba.cuda.dispatcher.get_current_device = lambda: SimpleNamespace(
         compute_capability=capability
     )
-    from ptp_symbolic.numeric.gpu.kernels import Accuracy, smooth_kernel, stepping_kernel
+    from ptp_symbolic.numeric.gpu.batch import Accuracy, smooth_kernel, stepping_kernel
     from ptp_symbolic.numeric.gpu.machine import Drives, Runs
 
     f, v, m, i = types.float64, types.float64[::1], types.float64[:, ::1], types.int64[::1]

@@ -19,14 +19,15 @@ from ptp_symbolic.numeric.experiment.machine import (
     refuse_rest_outside,
 )
 from ptp_symbolic.numeric.experiment.prediction import (
+    Found,
     Worth,
     least_separation,
     precision,
     predicted_curves,
     predicted_pairs,
     predicted_spreads,
+    search,
 )
-from ptp_symbolic.numeric.experiment.search import Found, search
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.report.experiment_figure import experiment_figure

@@ -16,7 +16,7 @@ from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import ProposedSets, placed_by_rows, propose
 from ptp_symbolic.numeric.diagnose.refits import fit_declared, from_rows, polished
 from ptp_symbolic.numeric.diagnose.trial import Task, fitted, halving, restarted
-from ptp_symbolic.numeric.experiment.contender import Contender, from_fit, without_logs
+from ptp_symbolic.numeric.experiment.machine import Contender, from_fit, without_logs
 from ptp_symbolic.numeric.identify.constants import ROUNDING
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.least_squares import all_values_at_start

@@ -21,7 +21,7 @@ from ptp_symbolic.numeric.data import read_log
 from ptp_symbolic.numeric.data.formats import read_table
 from ptp_symbolic.numeric.files import child, matlab
 from ptp_symbolic.numeric.files import content as file_content
-from ptp_symbolic.numeric.files.tables import excel_text, parquet_parts, tdms_parts
+from ptp_symbolic.numeric.files.child import excel_text, parquet_parts, tdms_parts
 from ptp_symbolic.platform import Platform
 from tests.data.files_of_formats import (
     ANGLE,

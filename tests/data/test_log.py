@@ -221,7 +221,7 @@ def test_a_platform_without_signals_of_a_role_is_refused(tmp_path: Path) -> None
 def test_an_error_far_into_a_long_log_is_found(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("ptp_symbolic.numeric.data.csv_table._CHUNK", 1000)
+    monkeypatch.setattr("ptp_symbolic.numeric.data.formats._CHUNK", 1000)
     rows = [f"{k / 200:.3f},{k % 7},{k % 5},{k % 3}" for k in range(20_000)]
     text = "\n".join([HEADER, *rows]) + "\n"
     whole = read_log(write(tmp_path, text), PLATFORM)

@@ -8,8 +8,7 @@ import numpy as np
 from scipy.linalg import expm
 
 from ptp_symbolic.models import emission, variants
-from ptp_symbolic.numeric.experiment.contender import Contender, without_logs
-from ptp_symbolic.numeric.experiment.machine import Conditions, Limit
+from ptp_symbolic.numeric.experiment.machine import Conditions, Contender, Limit, without_logs
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform, read_platform

@@ -7,8 +7,15 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.data import Log
-from ptp_symbolic.numeric.experiment.contender import as_it_is, information, spreads
-from ptp_symbolic.numeric.experiment.machine import Limit, Scenario, logged, play
+from ptp_symbolic.numeric.experiment.machine import (
+    Limit,
+    Scenario,
+    as_it_is,
+    information,
+    logged,
+    play,
+    spreads,
+)
 from ptp_symbolic.numeric.experiment.prediction import compared, precision
 from ptp_symbolic.numeric.identify.fit import fit_parameters
 from ptp_symbolic.numeric.identify.least_squares import Effort

@@ -9,7 +9,7 @@ import pytest
 import ptp_symbolic
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.experiment.machine import Limit, excess, read_limits
-from ptp_symbolic.numeric.experiment.search import FAMILIES, Family, Found, search, wave_of
+from ptp_symbolic.numeric.experiment.prediction import FAMILIES, Family, Found, search, wave_of
 from tests.identify.curves import Floats
 
 T = np.arange(1001) * 0.01

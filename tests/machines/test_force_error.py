@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.machines.force_error import force_error
-from ptp_symbolic.machines.study import EMPS_FILES, PLATFORMS, machines
+from ptp_symbolic.machines.study import EMPS_FILES, PLATFORMS, force_error, machines
 from ptp_symbolic.numeric.data import read_log
 from ptp_symbolic.platform import EffectDeclaration, read_platform
 from ptp_symbolic.report.machines import render_machines

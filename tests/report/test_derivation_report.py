@@ -16,13 +16,12 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.models.emission import module_of
 from ptp_symbolic.platform import EffectDeclaration, Platform, preset_names, read_platform
 from ptp_symbolic.report.derivation import has_warning, read_points, render_derivation
-from ptp_symbolic.report.derivation.emitted import emitted
+from ptp_symbolic.report.derivation.document import emitted, title_block
 from ptp_symbolic.report.derivation.linear import linearised
 from ptp_symbolic.report.derivation.operating_points import usual_points
 from ptp_symbolic.report.derivation.routes import three_routes
 from ptp_symbolic.report.derivation.simplification import simplified
 from ptp_symbolic.report.derivation.symbols import CATALOGUE, frames, symbols
-from ptp_symbolic.report.derivation.title import title_block
 from ptp_symbolic.report.latex_text import escaped
 from ptp_symbolic.report.pdf import PASSES
 from ptp_symbolic.symbolic.derivation import placement

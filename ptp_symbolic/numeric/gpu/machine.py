@@ -21,7 +21,7 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.buffers import limited_states
+from ptp_symbolic.numeric.simulation.integration import limited_states
 from ptp_symbolic.numeric.simulation.kernels.records import LARGEST_STATE
 from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, stack
 

@@ -1,4 +1,9 @@
-"""Integrate a model with adaptive steps: preallocate, run, and return the solution."""
+"""Integrate a model with adaptive steps: preallocate, run, and return the solution.
+
+Preallocated arrays of a run, for its work and its results: kernels allocate nothing.
+
+Integrate smooth motion by steps of order 8: preallocate, run, and return the results.
+"""
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -8,18 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError, number_of
-from ptp_symbolic.numeric.runtime.element_layout import contact_guards, contact_modes
+from ptp_symbolic.numeric.runtime.element_layout import contact_count, contact_guards, contact_modes
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation import hybrid
-from ptp_symbolic.numeric.simulation.buffers import (
-    contact_table,
-    new_record,
-    new_step,
-    new_tangents,
-    new_watch,
-)
+from ptp_symbolic.numeric.simulation import hybrid, smooth_runner
 from ptp_symbolic.numeric.simulation.events.impacts import STICKS
-from ptp_symbolic.numeric.simulation.kernels.calls import addresses
+from ptp_symbolic.numeric.simulation.kernels.calls import addresses, smooth_addresses
 from ptp_symbolic.numeric.simulation.kernels.linear import padded
 from ptp_symbolic.numeric.simulation.kernels.records import (
     EVENTS,
@@ -27,17 +25,185 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     STEPS,
     STIFF,
     TIME,
+    Record,
+    Step,
+    Tangents,
     Watch,
 )
 from ptp_symbolic.numeric.simulation.kernels.specialised import specialised, zeros_of
 from ptp_symbolic.numeric.simulation.methods.exponential_step import new_propagator
+from ptp_symbolic.numeric.simulation.methods.rosenbrock import STAGES
 from ptp_symbolic.numeric.simulation.methods.steps import ROSENBROCK, RUNGE_KUTTA
 from ptp_symbolic.numeric.simulation.sampling import loop_address, new_sampling
 from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
-from ptp_symbolic.numeric.simulation.smooth_integration import integrate_smooth, is_smooth
+from ptp_symbolic.numeric.simulation.smooth_runner import LANES, REACHED, ROWS, START, TRIED
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+
+
+def new_record(times: FloatArray, n: int, ns: int, ledger: int, event_room: int) -> Record:
+    """Preallocated results at `times` [k] in s: n states, ns tangents, `ledger` rows, events."""
+    z = np.zeros
+    return Record(
+        times,
+        z((len(times), n)),
+        z((len(times), n, ns)),
+        z((ledger, 3)),
+        z((event_room, 3)),
+        z(3),
+        z((4, 3)),
+        z(2),
+        z(6, dtype=np.int64),
+    )
+
+
+def new_step(n: int, nu: int, parameters: int, solved: int) -> Step:
+    """Preallocated arrays of a step of n states, the first `solved` of them in linear systems; with
+    no `parameters` derivatives by these are not asked for.
+    """
+    z, width = np.zeros, padded(n)
+    return Step(
+        z(width),
+        z(width),
+        z((STAGES, width)),
+        z((STAGES, width)),
+        z(n),
+        z((5, width)),
+        z((n, n)),
+        z((n, nu)),
+        z((n if parameters else 0, parameters)),
+        z((solved, width)),
+        z((solved, width)),
+        z(n, dtype=np.int64),
+        z(width),
+        z(width),
+        z(width),
+    )
+
+
+def contact_table(model: Model) -> IntArray:
+    """Table [c, 5] of the contacts: both rates, rule, flags PRESSED and SETTLING, cleared."""
+    rules = model.contacts
+    table = np.zeros((len(rules), 5), dtype=np.int64)
+    table[:, :3] = rules
+    return table
+
+
+def limited_states(model: Model) -> IntArray:
+    """State index [limits] of every limit of the domain."""
+    return np.array([model.state_names.index(name) for name, _ in model.limits], np.int64)
+
+
+def new_watch(model: Model, n: int, p: FloatArray) -> Watch:
+    """Preallocated guards and modes of n states, with the bounds of the domain at p [np]."""
+    parameters = len(p)
+    frictions, modes = len(model.friction_rates), len(model.mode_names)
+    elements = frictions + contact_count(frictions, modes)
+    watched = elements + len(model.limits)
+    guards, z = contact_guards(frictions, elements - frictions), np.zeros
+    strikes = (elements - frictions) * (n + 2)
+    return Watch(
+        z(guards),
+        z(modes),
+        z(modes),
+        z(watched),
+        z(watched),
+        z(watched),
+        z((guards, n)),
+        z((guards, parameters)),
+        z(n),
+        z(parameters),
+        z(n),
+        z(n),
+        z(strikes),
+        z((strikes, n)),
+        z((strikes, parameters)),
+        z(1),
+        z((2, 3)),
+        limited_states(model),
+        model.domain(p),
+        z(modes),
+        z(n),
+    )
+
+
+def new_tangents(
+    s: FloatArray, columns: IntArray, delay_column: IntArray, parameters: int, nu: int
+) -> Tangents:
+    """Preallocated tangents, begun at s [n, ns]; `columns` and `delay_column` as in `integrate`."""
+    (n, ns), z = (len(s), padded(s.shape[1])), np.zeros
+    table = z((n, ns))
+    table[:, : s.shape[1]] = s
+    return Tangents(
+        table.reshape(-1),
+        table,
+        columns,
+        delay_column,
+        z((STAGES, n * ns)),
+        z(n * ns),
+        z(n * ns),
+        z(n * ns),
+        z((3, n, n)),
+        z((3, n * ns)),
+        z((n, n)),
+        z((n, nu)),
+        z((n, parameters)),
+    )
+
+
+def is_smooth(model: Model) -> bool:
+    """Whether the motion of `model` has no modes, samplers or bounds, so that nothing ends a step
+    but its inputs.
+    """
+    return not (model.mode_names or model.sampler_periods or model.limits)
+
+
+def integrate_smooth(
+    model: Model,
+    p: FloatArray,
+    x: FloatArray,
+    inputs: InputTable,
+    held: bool,
+    stops: FloatArray,
+    times: FloatArray,
+    limits: FloatArray,
+    atol: FloatArray,
+    ledger: bool,
+) -> tuple[int, float, FloatArray, FloatArray, FloatArray, int]:
+    """Integrate `model` at p [np] from x [n] over `stops` in s, as `integrate` does: status, time
+    reached in s, state there, states [k, n] and ledger [k, 3] at `times`, steps tried.
+
+    `limits` [3]: relative tolerance, largest step in s, most steps; `atol` [n].
+    """
+    n, k, z = len(x), len(times), np.zeros
+    width = -(-(n + 2 * ledger) // LANES) * LANES
+    work, clock, counts = z((ROWS, width)), z(5), z(4, np.int64)
+    work[START, :n] = x
+    u, cursor, out, energies = z(len(model.input_names)), inputs.new_cursor(), z((k, n)), z((0, 3))
+    if ledger:
+        energies = z((k, 3))
+    status = smooth_runner.runner()(
+        smooth_addresses(model.module, ledger),
+        p,
+        z(0),
+        model.prepared(p),
+        inputs.arrays,
+        cursor,
+        held,
+        u,
+        limits,
+        atol,
+        work,
+        clock,
+        counts,
+        stops,
+        times,
+        out,
+        energies,
+    )
+    return status, float(clock[REACHED]), work[START, :n], out, energies, int(counts[TRIED])
+
 
 FACE_WIDTH = 1e-9  # rad, or m
 EXPLICIT, IMPLICIT = "runge_kutta", "rosenbrock"
