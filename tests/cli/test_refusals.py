@@ -109,7 +109,8 @@ def test_signals_that_cannot_be_compared_name_the_file(
     platform.write_text(text.replace(old, new), encoding="utf-8")
     done = call("fit", "--platform", platform, SAMPLE / "train", "--out", tmp_path / "out")
     assert done.code == 2
-    assert done.err.startswith(f"ptp-symbolic: {platform}: ") and wanted in done.err
+    told = done.err.splitlines()[-1]  # after phases, on a machine that is slow
+    assert told.startswith(f"ptp-symbolic: {platform}: ") and wanted in told
 
 
 @pytest.mark.parametrize("command", ["simulate", "fit"])
