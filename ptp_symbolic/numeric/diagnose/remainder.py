@@ -26,6 +26,7 @@ from ptp_symbolic.numeric.identify.constants import (
     LAGS,
     LEAST_CYCLES,
     MATERIAL,
+    NOTHING,
     ROWS_PER_WINDOW,
     TEST_ALARM,
 )
@@ -40,7 +41,6 @@ WHITE = (
     "residuals should not be autocorrelated; rounding and noise of the inputs correlate them a"
     " little where nothing is missing, so that this test alone proves nothing"
 )
-ROUND_OFF = 1e-9  # 1; of a residual in standard deviations, or of an input
 INDEPENDENT = (
     "the residual should be uncorrelated with {name}; where it is not, an effect is missing, or the"
     " log of {name} is noisy"
@@ -77,7 +77,7 @@ def residual_tests(fit: Fit, inputs: tuple[str, ...]) -> list[dict[str, Any]]:
 
 def _is_constant(series: Sequence[FloatArray]) -> bool:
     """Whether no run changes by more than rounding does."""
-    return all(float(np.ptp(s)) <= ROUND_OFF * max(1.0, float(np.max(np.abs(s)))) for s in series)
+    return all(float(np.ptp(s)) <= NOTHING * max(1.0, float(np.max(np.abs(s)))) for s in series)
 
 
 def correlations(
