@@ -18,7 +18,7 @@ def export(source: Source, target: str, folder: str | Path) -> list[Path]:
     >>> import tempfile
     >>> import ptp_symbolic as ptp
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     [path.name for path in ptp.export("thesis-ideal", "c99", folder)]
+    ...     [path.name for path in ptp.export("ideal", "c99", folder)]
     ['ideal.h', 'ideal.c']
     """
     from ptp_symbolic.models.export import export as written

@@ -50,6 +50,9 @@ for command in (
 
 def run(command: click.Command) -> None:
     """Run `command`; what the user got wrong is one line on stderr and exit code 2."""
+    if "" in sys.argv[1:]:
+        before = sys.argv[sys.argv.index("") - 1] if sys.argv[1] else "the command"
+        _refuse(f"What follows {before} is empty; give it a value (was a shell variable not set?).")
     try:
         code = command.main(standalone_mode=False)
     except click.exceptions.Exit as ended:

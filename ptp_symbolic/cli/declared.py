@@ -1,8 +1,20 @@
-"""What a command says of a platform: the parameters that keep a default nobody declared."""
+"""What a command says of a platform: defaults that it keeps, and that its file is in the way."""
+
+from pathlib import Path
 
 import click
 
+from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import Platform
+
+
+def refuse_own_folder(platform: Platform, out: Path) -> None:
+    """Raise InputError where a platform.toml in `out` would replace the file of `platform`."""
+    if platform.source and (out / "platform.toml").resolve() == Path(platform.source).resolve():
+        raise InputError(
+            f"`out` {out}: its platform.toml is the platform that is read, and the result would"
+            " replace it; give another folder."
+        )
 
 
 def note_defaults(platform: Platform) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from ptp_symbolic.cli.declared import note_defaults
+from ptp_symbolic.cli.declared import note_defaults, refuse_own_folder
 from ptp_symbolic.cli.progress import progress_line
 
 
@@ -84,6 +84,7 @@ def diagnose(
     from ptp_symbolic.workflows.diagnosis import diagnose_platform
 
     platform = declared_platform(source)
+    refuse_own_folder(platform, out)
     check_writable(out)
     words = ["diagnose", "--platform", source, "--train", *train, "--validate", *validate]
     words += ["--black-box"] * black_box
@@ -118,6 +119,7 @@ def fit(source: str, logs: tuple[str, ...], out: Path, as_json: bool) -> None:
     from ptp_symbolic.workflows.fit import fit_platform
 
     platform = declared_platform(source)
+    refuse_own_folder(platform, out)
     check_writable(out)
     words = ["fit", "--platform", source, *logs, "--out", str(out)]
     with progress_line() as say:

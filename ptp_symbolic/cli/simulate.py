@@ -197,6 +197,8 @@ def given_signals(
             end = float(time[-1] - time[0]) if duration is None else duration
             continue
         name, equals, profile = text.partition("=")
+        if not equals and name in model.input_names:
+            raise InputError(f"Input '{name}' has no profile; write {name}=constant:3.")
         if not equals:
             if len(model.input_names) != 1:
                 raise InputError(

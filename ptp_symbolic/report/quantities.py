@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 NOTHING = "–"
+TOGETHER = "\u00a0"  # between a number and its sign, where no line breaks
 _RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
@@ -93,8 +94,8 @@ def gain(earned: Mapping[str, Any] | None) -> str:
         return NOTHING
     bounds = earned.get("ci95") or ()
     known = bounds and all(map(_usable, bounds))
-    within = f" ({' to '.join(map(_percent, bounds))} %)" if known else ""
-    return f"{_percent(earned['share'])} %{within}"
+    within = f" ({' to '.join(map(_percent, bounds))}{TOGETHER}%)" if known else ""
+    return f"{_percent(earned['share'])}{TOGETHER}%{within}"
 
 
 def _percent(share: float) -> str:

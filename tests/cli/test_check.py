@@ -24,10 +24,15 @@ def table(tmp_path: Path) -> tuple[Path, Path]:
     return source, logs
 
 
+def without_phases(text: str) -> str:
+    """What stderr says beside the phases that a slow machine is told of."""
+    return re.sub(r"(?m)^\[ *\d+\.\d s\] .+\n", "", text)
+
+
 def test_what_logs_hold_and_can_show(call, table: tuple[Path, Path], tmp_path: Path) -> None:
     out = tmp_path / "out"
     done = call("check", "--platform", table[0], table[1], "--out", out)
-    assert done.code == 0 and not re.sub(r"(?m)^\[ *\d+\.\d s\] .+\n", "", done.err)
+    assert done.code == 0 and not without_phases(done.err)
     clock = (
         "run_1: 600 samples over 5.99 s at 100 Hz; evenly sampled, the longest period is 0.01 s."
     )
@@ -85,7 +90,7 @@ def test_a_platform_alone_is_checked(call, tmp_path: Path) -> None:
     path = tmp_path / "turret.toml"
     path.write_text(LEFT_OUT, encoding="utf-8")
     done = call("check", "--platform", path)
-    assert done.code == 2 and done.err.count("\n") == 1
+    assert done.code == 2 and without_phases(done.err).count("\n") == 1
     assert "Not declared, and without a natural default: v_s_pan in rad/s" in done.err
     assert "F_v_pan in N m s/rad" in done.err and "tau0_pan" not in done.err
     assert "States: theta_pan [rad], omega_pan [rad/s]." in done.out
@@ -108,7 +113,7 @@ def test_a_whole_platform_passes_and_a_wrong_signal_does_not(call, tmp_path: Pat
     path = tmp_path / "table.toml"
     path.write_text(PLATFORM, encoding="utf-8")
     done = call("check", "--platform", path)
-    assert (done.code, done.err) == (0, "")
+    assert (done.code, without_phases(done.err)) == (0, "")
     path.write_text(PLATFORM.replace("tau_pan", "u_pan"), encoding="utf-8")
     done = call("check", "--platform", path)
     assert done.code == 2

@@ -137,7 +137,7 @@ def test_points_of_a_linear_axis_are_in_newtons(
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ((), "Unknown column 'torque'. Choose one of: rate, force"),
+        ((), "Unknown column 'torque'. Choose one of: rate, force; say by --torque which one"),
         (("--torque", "force", "--platform", "thesis-pan-drive"), "moves in rad/s; give points"),
     ],
 )

@@ -113,3 +113,13 @@ def test_runs_too_short_for_the_lags_are_left_out() -> None:
 
 def test_a_residual_of_nothing_passes() -> None:
     assert all(row["passed"] for row in judged([np.zeros((500, 1))], [np.ones((500, 1))]).values())
+
+
+def test_what_never_changes_is_not_tested() -> None:
+    """An axis that rests leaves a residual that says nothing, as an input that is constant does."""
+    rng = np.random.default_rng(5)
+    residuals, inputs = white(rng, 2), white(rng, 2)
+    for left, given in zip(residuals, inputs, strict=True):
+        left[:, 0], given[:, 1] = 0.1, 3.0
+    rows = judged(residuals, inputs)
+    assert set(rows) == {("whiteness", "y1"), ("independence of u_pan", "y1")}

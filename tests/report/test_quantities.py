@@ -52,7 +52,7 @@ def test_intervals_set_the_digits_of_their_value() -> None:
     ],
 )
 def test_gains_are_written_in_tenths_of_a_percent(share: float, bounds: Any, text: str) -> None:
-    assert gain({"share": share, "ci95": bounds}) == text
+    assert gain({"share": share, "ci95": bounds}) == text.replace(" %", "\u00a0%")
 
 
 def test_no_gain_is_a_dash() -> None:

@@ -85,8 +85,9 @@ def read_points(path: Path, wanted: Columns) -> Points:
     rate alone, a breakaway torque of zero, and torques that brake the motion.
     """
     table = read_table(path)
-    names = [wanted.rate, wanted.torque, *([wanted.spread] if wanted.spread else [])]
-    places = [_place(table, name) for name in names]
+    names = {"rate": wanted.rate, "torque": wanted.torque}
+    names |= {"spread": wanted.spread} if wanted.spread else {}
+    places = [_place(table, name, what) for what, name in names.items()]
     units = _units(table, places[0])
     factors = [_factor(table, places[0], units.rate, units.other_rates)]
     factors += [_torque_factor(table, k, units, wanted.nominal) for k in places[1:]]
@@ -97,10 +98,11 @@ def read_points(path: Path, wanted: Columns) -> Points:
     return points
 
 
-def _place(table: Table, name: str) -> int:
+def _place(table: Table, name: str, what: str) -> int:
     known = [heading for heading, _ in table.headings]
     if name not in known:
-        raise InputError(f"{table.head}: {unknown('column', name, known)}")
+        more = f"; say by `{what}` which one it is"
+        raise InputError(f"{table.head}: {unknown('column', name, known, more)}")
     return known.index(name)
 
 
