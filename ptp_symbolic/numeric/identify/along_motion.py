@@ -311,7 +311,8 @@ def angles_behind_sensors(addresses, layout, shown, time, measured, inputs, p, s
     return angles
 
 
-_FLAGS, _MOTION = types.boolean[::1], types.NamedTuple((VECTOR, *[MATRIX] * 5), Motion)
+_FLAGS = INTEGERS.copy(dtype=types.boolean)
+_MOTION = types.NamedTuple((VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX), Motion)
 _ALONG = (INTEGERS, LAYOUT, _MOTION, VECTOR, VECTOR)  # addresses, layout, motion, p, resting
 AHEAD = (
     (gear_ahead, (*_ALONG, MATRIX, _FLAGS)),

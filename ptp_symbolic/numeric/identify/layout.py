@@ -43,7 +43,9 @@ class Layout(NamedTuple):
     modes: int
 
 
-LAYOUT = types.NamedTuple((*[INTEGERS] * 10, *[types.int64] * 3), Layout)
+LAYOUT = types.NamedTuple(
+    [types.int64 if kind is int else INTEGERS for kind in Layout.__annotations__.values()], Layout
+)
 
 
 def layout_of(model: Model) -> Layout:
