@@ -305,7 +305,7 @@ def main() -> None:
     parser.add_argument("--quick", action="store_true", help="about a minute")
     parser.add_argument("--out", type=Path, help="folder for JSON, pictures and a page")
     arguments = parser.parse_args()
-    content = {
+    content: dict[str, Any] = {
         "computer": computer(),
         "rows": quick() if arguments.quick else whole(arguments.all),
         "growth": growth(QUICK_LIMIT if arguments.quick else LIMIT),

@@ -126,21 +126,23 @@ def _varied(name: str, count: int) -> dict[str, Any]:
 
 
 def _batch(name: str, count: int, threads: int) -> Any:
-    same = {"rtol": TOLERANCE, "atol": TOLERANCE, "threads": threads}
+    same: dict[str, Any] = {"rtol": TOLERANCE, "atol": TOLERANCE, "threads": threads}
     return ptp.simulate_batch(ptp.load(name), END, **same, **_varied(name, count))
 
 
 def _loop(name: str, count: int) -> None:
     machine, given, ends = ptp.load(name), _varied(name, count), np.array([0.0, END])
-    same = {"inputs": given.get("inputs"), "rtol": TOLERANCE, "atol": TOLERANCE, "ledger": False}
+    same: dict[str, Any] = {"rtol": TOLERANCE, "atol": TOLERANCE, "ledger": False}
+    same["inputs"] = given.get("inputs")
     kind = "x0" if "x0" in given else "parameters"
     ((varied, values),) = given[kind].items()
     for value in values:
-        ptp.simulate(machine, ends, **same, **{kind: {varied: value}})
+        same[kind] = {varied: value}
+        ptp.simulate(machine, ends, **same)
 
 
 def _run(machine: ptp.Machine, length: float) -> Any:
-    same = {"rtol": TOLERANCE, "atol": TOLERANCE, "ledger": False}
+    same: dict[str, Any] = {"rtol": TOLERANCE, "atol": TOLERANCE, "ledger": False}
     return ptp.simulate(machine, np.array([0.0, length]), DRIVEN[machine.name], **same)
 
 

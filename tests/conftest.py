@@ -70,8 +70,11 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     machine every process would.
     """
     if getattr(session.config.option, "numprocesses", None):  # that of the session, not of a worker
+        from ptp_symbolic.numeric.identify.ahead import FIT, begin_fit
+
         compile_ahead(*COMPILE)
-        for kernel in COMPILE:
+        begin_fit()
+        for kernel in (*COMPILE, FIT):
             wait_until_compiled(kernel)
 
 

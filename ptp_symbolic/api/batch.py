@@ -203,10 +203,16 @@ class _Wanted:
 
         states = [name for name in self.by if name in machine.state_names]
         along = directions(machine, [n for n in self.by if n not in states], states)
-        of_outputs = not set(self.read) <= set(machine.state_names)
         return partial(
-            integrate_batch_tangents, along=along, of_outputs=of_outputs, threads=threads
+            integrate_batch_tangents,
+            along=along,
+            of_outputs=self.reads_outputs(machine),
+            threads=threads,
         )
+
+    def reads_outputs(self, machine: Machine) -> bool:
+        """Whether signals are read that are no states."""
+        return not set(self.read) <= set(machine.state_names)
 
     def refuse_too_large(self, count: int, k: int) -> None:
         """Raise InputError where the results do not fit into memory."""
@@ -248,7 +254,8 @@ def _run(
     slopes = {name: np.empty((*v.shape, m)) for name, v in outputs.items()} if m else {}
     reasons: dict[int, str] = {}
     fewest = 1 if m else lanes_together(machine)
-    rows = max(fewest, int(CHUNK_BYTES / (8.0 * k * x.shape[1] * (1 + m))))
+    columns = x.shape[1] + (len(machine.output_names) if wanted.reads_outputs(machine) else 0)
+    rows = max(fewest, int(CHUNK_BYTES / (8.0 * k * columns * (1 + m))))
     for first in range(0, count, rows):
         part = slice(first, min(first + rows, count))
         found = integrate(problem, p[part], x[part], drive[part])
@@ -447,8 +454,7 @@ def batch_function(
     the final states or the reductions of `outputs` (see `simulate_batch`, which also takes what is
     `common` to all runs: signals and parameters by name, `parameters`, `x0`, tolerances). With
     `jac` it returns Y and its derivatives [n, q, p], as SciPy has it. Rows of runs that fail are
-    NaN. Raises InputError as `simulate_batch`, and for outputs that are no
-    numbers.
+    NaN. Raises InputError as `simulate_batch`, and for outputs that are no numbers.
 
     >>> import ptp_symbolic as ptp
     >>> f = ptp.batch_function("ideal", ["J_pan", "b_pan"], ["final(omega_pan)"], 1.0, tau_pan=0.1)

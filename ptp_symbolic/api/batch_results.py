@@ -116,6 +116,7 @@ class Batch:
     def to_xarray(self) -> Any:
         """An xarray Dataset over `run` and `time` in s, with the units as attributes.
 
+        Derivatives are called "d OUTPUT by NAME": a slash would be a folder to netCDF and Zarr.
         Raises InputError where xarray is not installed.
         """
         xarray = extra_library("xarray")
@@ -125,11 +126,11 @@ class Batch:
             for name, values in self.table().items()
         }
         columns["reason"] = ("run", np.array(self.table()["reason"], dtype=np.str_), {})
-        taken = {n: f"initial {n}" if n in self.signals else n for n in columns}
+        taken = {n: f"initial {n}" if n in self.signals else _by(n) for n in columns}
         data = {taken[name]: column for name, column in columns.items()}
         data |= {n: (("run", "time"), v, {"units": self.units[n]}) for n, v in self.signals.items()}
         data |= {
-            slope_name(name, by): (("run", "time"), self.sensitivity(name, by), {})
+            _by(slope_name(name, by)): (("run", "time"), self.sensitivity(name, by), {})
             for name in self.signals
             for by in self.by
         }
@@ -139,3 +140,7 @@ class Batch:
 def slope_name(output: str, by: str) -> str:
     """Name of the derivative of an output."""
     return f"d {output} / d {by}"
+
+
+def _by(name: str) -> str:
+    return name.replace(" / d ", " by ")

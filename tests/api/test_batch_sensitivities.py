@@ -198,6 +198,22 @@ def test_tangents_in_memory_are_those_of_a_chunk(monkeypatch: pytest.MonkeyPatch
     assert peak < 3.0 * chunk < 0.5 * whole
 
 
+def test_a_dataset_has_derivatives_under_names_that_files_can_have() -> None:
+    pytest.importorskip("xarray", reason="the extra python")
+    batch = ptp.simulate_batch(
+        "ideal",
+        np.linspace(0.0, 0.01, 3),
+        J_pan=[1e-3, 2e-3],
+        tau_pan=TORQUE,
+        outputs=["theta_pan", "final(omega_pan)"],
+        sensitivities=["J_pan"],
+    )
+    found = batch.to_xarray()
+    assert found["d final(omega_pan) by J_pan"].dims == ("run",)
+    assert found["d theta_pan by J_pan"].dims == ("run", "time")
+    assert not [name for name in found.variables if "/" in str(name)]
+
+
 @pytest.mark.parametrize(
     ("given", "said"),
     [

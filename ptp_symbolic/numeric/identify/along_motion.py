@@ -52,7 +52,9 @@ class Layout(NamedTuple):
     modes: int
 
 
-LAYOUT = types.NamedTuple((*[INTEGERS] * 10, *[types.int64] * 3), Layout)
+LAYOUT = types.NamedTuple(
+    [types.int64 if kind is int else INTEGERS for kind in Layout.__annotations__.values()], Layout
+)
 
 
 def layout_of(model: Model) -> Layout:
@@ -413,7 +415,8 @@ def angles_behind_sensors(addresses, layout, shown, time, measured, inputs, p, s
     return angles
 
 
-_FLAGS, _MOTION = types.boolean[::1], types.NamedTuple((VECTOR, *[MATRIX] * 5), Motion)
+_FLAGS = INTEGERS.copy(dtype=types.boolean)
+_MOTION = types.NamedTuple((VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX), Motion)
 _ALONG = (INTEGERS, LAYOUT, _MOTION, VECTOR, VECTOR)  # addresses, layout, motion, p, resting
 AHEAD = (
     (gear_ahead, (*_ALONG, MATRIX, _FLAGS)),

@@ -206,7 +206,20 @@ _WINDOWS = types.NamedTuple(
 )
 AHEAD = (
     (_empty_broken, (VECTOR, types.float64, INTEGERS, INTEGERS, INTEGERS)),
-    (_weigh, (VECTOR, types.float64, types.int64, *[INTEGERS] * 4, VECTOR, VECTOR)),
+    (
+        _weigh,
+        (
+            VECTOR,
+            types.float64,
+            types.int64,
+            INTEGERS,
+            INTEGERS,
+            INTEGERS,
+            INTEGERS,
+            VECTOR,
+            VECTOR,
+        ),
+    ),
     (averages, (_WINDOWS, MATRIX)),
     (_fill_moments, (VECTOR, MATRIX, types.float64, MATRIX, CUBE)),
 )

@@ -15,8 +15,7 @@ from typing import Any
 import llvmlite.ir as ir
 from numba import types
 from numba.core import cgutils
-from numba.core.datamodel import models
-from numba.extending import intrinsic, register_model
+from numba.extending import intrinsic, models, register_model
 
 from ptp_symbolic.numeric.simulation.kernels.records import inlined, kernel
 
