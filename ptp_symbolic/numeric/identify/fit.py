@@ -466,9 +466,17 @@ class _Given:
     misleading: Sequence[Shift] | None
     earlier: Fit | None
 
-    def fit(self, values: Mapping[str, float], z: Sequence[FloatArray], *end: Any) -> Fit:
-        """A fit that ended at `values` and `z` with a cost, evaluations and why it failed."""
-        return Fit(self.model, self.runs, self.free, values, tuple(z), *end, self.effort.tolerance)
+    def fit(
+        self,
+        values: Mapping[str, float],
+        z: Sequence[FloatArray],
+        cost: float,
+        evaluations: Sequence[Evaluation],
+        failed: str | None,
+    ) -> Fit:
+        """A fit that ended at `values` and `z`."""
+        given, tolerance = (self.model, self.runs, self.free), self.effort.tolerance
+        return Fit(*given, values, tuple(z), cost, evaluations, failed, tolerance)
 
     def of_light(self, kept: Mapping[str, Any]) -> tuple[Fit, Callable[[], Sequence[Evaluation]]]:
         """The fit of which `_End.light` was recorded, and what makes its evaluations."""
