@@ -101,7 +101,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "f98faad0cf47e339"
+MODEL_HASH = "077ed13411e1d0e2"
 NAME = "full"
 TITLE = "Both axes of the thesis, all drives"
 # How many numbers `prepare` writes.
@@ -188,7 +188,7 @@ PARAMETERS = (
 )
 
 
-# Arguments: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS (SI);
+# Arguments, in SI: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS;
 # modes m as MODE_NAMES; c as `prepare` writes it. Lengths and shapes are in brackets.
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def constants(p):
@@ -1995,4 +1995,4 @@ EFFECTS = (
      "linear actuator with lead screw and linkage",
      "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6", "", False),
 )
-# END sha256 d075609e63ccec7678ad76801029b68e71af13c6a853ebcd4bc0c5962704b3da
+# END sha256 e2576e5d223d32c37986fc97781de60f7c2cca412775473c4dda6fa74c930aaf

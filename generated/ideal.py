@@ -28,7 +28,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "c62cb3743e8c9d55"
+MODEL_HASH = "ed093a152caf5434"
 NAME = "ideal"
 TITLE = "Balanced pan-tilt platform of the thesis"
 # How many numbers `prepare` writes.
@@ -67,7 +67,7 @@ PARAMETERS = (
 )
 
 
-# Arguments: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS (SI);
+# Arguments, in SI: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS;
 # modes m as MODE_NAMES; c as `prepare` writes it. Lengths and shapes are in brackets.
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def constants(p):
@@ -432,4 +432,4 @@ EFFECTS = (
      "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
      "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
 )
-# END sha256 53ff858469541dae6e395af85d787c1cfd4b3bbf1081cbb27ae9e24574d675fc
+# END sha256 b15c21a2b090cdb17ce95af1ccebecf32fd23f64f92f264174c1d61ec02a1a28

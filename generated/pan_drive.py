@@ -32,7 +32,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "9a687f37dcb2cee4"
+MODEL_HASH = "2708a5dc58b9ea67"
 NAME = "pan_drive"
 TITLE = "Pan drive of the thesis"
 # How many numbers `prepare` writes.
@@ -87,7 +87,7 @@ PARAMETERS = (
 )
 
 
-# Arguments: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS (SI);
+# Arguments, in SI: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS;
 # modes m as MODE_NAMES; c as `prepare` writes it. Lengths and shapes are in brackets.
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def constants(p):
@@ -600,4 +600,4 @@ EFFECTS = (
     ("dc_motor", "pan", ("L_pan", "R_pan", "K_t_pan", "J_motor_pan", "N_pan"), (), (),
      "geared DC motor", "thesis Eq. 3.10, Eq. 3.11 with erratum 8", "", False),
 )
-# END sha256 92a2b648bb712b7e58bb83a698e372011f165072a2842e8bf9658161a739b4d3
+# END sha256 e21718c0a7ebf8ee0233fb8ced3e991f57204ac047108edfb0b912afd6837e1e

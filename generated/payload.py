@@ -43,7 +43,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "dccbf53d3444c061"
+MODEL_HASH = "7d8704cc2016505e"
 NAME = "payload"
 TITLE = "Pan-tilt platform of the thesis with its payload"
 # How many numbers `prepare` writes.
@@ -90,7 +90,7 @@ PARAMETERS = (
 )
 
 
-# Arguments: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS (SI);
+# Arguments, in SI: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS;
 # modes m as MODE_NAMES; c as `prepare` writes it. Lengths and shapes are in brackets.
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def constants(p):
@@ -650,4 +650,4 @@ EFFECTS = (
      "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
      "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
 )
-# END sha256 034b38ca5a102f539d43077004a3003437bd5d5b445ecc278210a9ee38612385
+# END sha256 77f1ed0169b177196c8fd38f3b57f4cafddf27984033f0141df81c92af9a91e1

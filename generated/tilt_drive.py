@@ -60,7 +60,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "0c8be2f0bc8c7c14"
+MODEL_HASH = "4a2b93e3a6a178d5"
 NAME = "tilt_drive"
 TITLE = "Tilt drive of the thesis"
 # How many numbers `prepare` writes.
@@ -116,7 +116,7 @@ PARAMETERS = (
 )
 
 
-# Arguments: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS (SI);
+# Arguments, in SI: t in s; x in STATE_UNITS, u in INPUT_UNITS, p in the units of PARAMETERS;
 # modes m as MODE_NAMES; c as `prepare` writes it. Lengths and shapes are in brackets.
 @njit(cache=True, error_model="numpy", nogil=True, forceinline=True, _nrt=False)
 def constants(p):
@@ -1033,4 +1033,4 @@ EFFECTS = (
      "linear actuator with lead screw and linkage",
      "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6", "", False),
 )
-# END sha256 490e8d3712c7601da0216fae248e6878916e477cab0797eb04561f6bf46d868f
+# END sha256 49bffeeececffe882ce3104a2918fe4f891d9d65be8267908a0742d8a9a61fe0

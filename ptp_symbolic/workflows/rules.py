@@ -105,14 +105,14 @@ RULES = (
     ),
     Rule(
         "significant",
-        "What a member gains is significant at 5 %, over all that was looked at.",
+        "What a member gains is significant at 5 %, over all that was compared.",
         _in("stepwise", "FALSE_ALARM"),
         np.inf,
         "387 and 357 need refits; stated level",
     ),
     Rule(
         "most beside a remainder",
-        "Where more than noise remains, a member surely explains more of the error than remains.",
+        "Where more than noise remains, the lower limit of a member's share is above one half.",
         _in("gain", "Gain.is_most"),
         True,
         "370, 342 and 387 need refits; set 254 (a wrong name)",
@@ -280,7 +280,7 @@ RULES = (
     ),
     Rule(
         "along the motion",
-        "Where more than noise remains, a set grows by what gains in the torque along the motion.",
+        "Where more than noise remains, a set is extended by gains in the torque along the motion.",
         _in("verdict", "extended_along_motion"),
         _always(None),
         "EMPS (friction beside friction, a delay)",
@@ -336,7 +336,7 @@ RULES = (
     ),
     Rule(
         "floating",
-        "A set is grown again without one of its members.",
+        "A set is extended again without one of its members.",
         _in("search", "floated"),
         lambda stepwise, best, steps: (best, steps),
         "none in 14 sets; beside aliases, which these do not have",

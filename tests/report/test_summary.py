@@ -81,7 +81,7 @@ def _verdict(word: str, final: Trial, **more: Any) -> Any:
     usual = {
         "confusable": {},
         "closest": None,
-        "rivals": (),
+        "alternatives": (),
         "refused": {},
         "is_along_motion": False,
     }

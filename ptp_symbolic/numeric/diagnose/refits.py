@@ -153,7 +153,7 @@ def _in_time(task: Task, trial: Trial, carried: Carried) -> Trial:
     """The trial, or a better end past local minima in which friction breaks away a sample late
     somewhere: a drive soon forgets it, so that blocks of runs separate it from the parameters,
     where the sum of all squares compensates it by parameters that are wrong everywhere (see
-    `identify.robust_loss`). Where runs are windows, these are such blocks.
+    `identify.blocks`). Where runs are windows, these are such blocks.
     """
     for _ in range(CYCLES if task.windows else 0):
         if leaves_white_noise(trial, carried):

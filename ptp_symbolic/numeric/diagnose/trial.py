@@ -73,8 +73,8 @@ class Task:
     """What stays the same through a diagnosis.
 
     `whole` are the training runs as they were logged, `every_sample` the same or their windows, and
-    `train` these with as many samples as the search needs (see `fewer_samples`); `windows` some
-    short and some longer ones (none where `train` are windows already), `few` those windows by
+    `train` these with as many samples as the search needs (see `with_fewer_samples`); `windows`
+    some short and some longer ones (none where `train` are windows already), `few` those windows by
     which sets are compared first, `validate` the runs that are never fitted. `free` are the
     declared free parameters, `fixed` the values of all others (candidates vanish). `input_noise` is
     the declared noise (rms) of every input [nu] in its unit (None: as the logs show it),

@@ -474,10 +474,9 @@ class _Given:
         evaluations: Sequence[Evaluation],
         failed: str | None,
     ) -> Fit:
-        """A fit that ended at `values` and `z` with a cost, evaluations and why it failed."""
-        tolerance = self.effort.tolerance
-        own = (self.model, self.runs, self.free)
-        return Fit(*own, values, tuple(z), cost, evaluations, failed, tolerance)
+        """A fit that ended at `values` and `z`."""
+        given, tolerance = (self.model, self.runs, self.free), self.effort.tolerance
+        return Fit(*given, values, tuple(z), cost, evaluations, failed, tolerance)
 
     def of_light(self, kept: Mapping[str, Any]) -> tuple[Fit, Callable[[], Sequence[Evaluation]]]:
         """The fit of which `_End.light` was recorded, and what makes its evaluations."""

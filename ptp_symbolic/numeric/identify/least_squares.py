@@ -189,7 +189,7 @@ class Problem:
     `refine`, where given, corrects the Jacobians from which steps are taken: those that come out
     are always the ones at the point, which intervals need. `allow` projects steps to where no
     machine is possible. `blocks` are, run by run, the blocks of rows that the robust loss weighs
-    (see `identify.robust_loss`): whole runs, unless given; `robust_below` is that of
+    (see `identify.blocks`): whole runs, unless given; `robust_below` is that of
     `robust_tuning`. `logarithmic` marks logarithms of values, in which steps are to be straight.
     """
 
@@ -437,7 +437,7 @@ class Effort:
     steps in a row may be rejected.
 
     `secants` is the step, in search coordinates, of the finite differences that replace derivatives
-    which mislead (see `identify.secants`); None: none are replaced. The robust loss weighs blocks
+    which mislead (see `Secants`); None: none are replaced. The robust loss weighs blocks
     of `block` s, whole runs unless given; `robust_below` is that of `robust_tuning`. Steps that are
     `straight` are so in the values of parameters that are searched in logarithms: these end a fit
     in its valley, along which logarithms bend; a search that is not yet in the right one goes far

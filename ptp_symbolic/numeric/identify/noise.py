@@ -151,7 +151,7 @@ class Noise:
     """Noise with the standard deviation `rms` of which a part is an autoregression with `pole` at
     one sample; `most` is the largest standard deviation that the spectrum allows at 95 %. It is not
     `steady` where the series scatters more from stretch to stretch than any such noise (see
-    `steady_noise`).
+    `is_steady`).
     """
 
     rms: float

@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -62,9 +61,6 @@ from ptp_symbolic.numeric.simulation.signals.inputs import (
     delays_of,
     stack,
 )
-
-if TYPE_CHECKING:
-    from ptp_symbolic.numeric.simulation.fixed_integration import FixedSolution
 
 FloatArray = NDArray[np.float64]
 
@@ -355,8 +351,6 @@ def simulate(
             )
             return found
         if chosen == FIXED_STEP:
-            from ptp_symbolic.numeric.simulation.fixed_integration import integrate_in_fixed_steps
-
             return integrate_in_fixed_steps(model, p, x, table, t, step, event_room)
         return integrate(
             model,
