@@ -48,13 +48,18 @@ for command in (
     commands.add_command(command)
 
 
+def own_name(command: click.Command) -> str:
+    """The name of the program that runs `command`, however it was started."""
+    return "ptp-symbolic" if isinstance(command, click.Group) else "regenerate-equations"
+
+
 def run(command: click.Command) -> None:
     """Run `command`; what the user got wrong is one line on stderr and exit code 2."""
     if "" in sys.argv[1:]:
         before = sys.argv[sys.argv.index("") - 1] if sys.argv[1] else "the command"
         _refuse(f"What follows {before} is empty; give it a value (was a shell variable not set?).")
     try:
-        code = command.main(standalone_mode=False)
+        code = command.main(prog_name=own_name(command), standalone_mode=False)
     except click.exceptions.Exit as ended:
         sys.exit(ended.exit_code)
     except click.exceptions.NoArgsIsHelpError as bare:

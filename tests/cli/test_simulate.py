@@ -4,10 +4,12 @@ import csv
 import json
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from ptp_symbolic.cli.simulate import given_signals
 from ptp_symbolic.numeric.data import read_inputs, read_log
 from ptp_symbolic.platform import platform_file, read_platform
 
@@ -222,8 +224,11 @@ def test_an_angle_of_several_turns_is_pointed_out_unless_it_has_a_unit(
     assert abs(float(columns[1]) - 0.5235987755982988) < 1e-15
 
 
-def test_a_set_point_of_several_turns_is_pointed_out(call, tmp_path: Path) -> None:
-    given = ("simulate", "--platform", "thesis-pan-servo", "--duration", "0.01", "--out", tmp_path)
-    done = call(*given, "--input", "setpoint_pan=step:30@0.001")
-    assert "setpoint_pan goes to 30 rad, 4.77 turns; a profile is in rad, not in deg." in done.err
-    assert "Note" not in call(*given, "--input", "setpoint_pan=step:0.3@0.001").err
+def test_a_set_point_of_several_turns_is_pointed_out(capsys: pytest.CaptureFixture[str]) -> None:
+    servo = SimpleNamespace(input_names=("setpoint_pan",), units={"setpoint_pan": "rad"})
+    platform = read_platform("thesis-pan-servo")
+    given_signals(platform, servo, ("setpoint_pan=step:30@0.001",), 1.0)
+    said = "setpoint_pan goes to 30 rad, 4.77 turns; a profile is in rad, not in deg."
+    assert said in capsys.readouterr().err
+    given_signals(platform, servo, ("setpoint_pan=step:0.3@0.001",), 1.0)
+    assert capsys.readouterr().err == ""
