@@ -157,7 +157,7 @@ def test_what_is_missing_or_misspelt_points_to_the_help(call) -> None:
         (("fit",), "Missing argument 'LOGS...'. See 'ptp-symbolic fit --help'."),
         (("simulate",), "Missing option '--platform'. See 'ptp-symbolic simulate --help'."),
         (("fit", "--platfrom", "x"), "Did you mean '--platform'? See 'ptp-symbolic fit --help'."),
-        (("bench", "--nope"), "No such option '--nope'. See 'ptp-symbolic bench --help'."),
+        (("bench", "--zzz"), "No such option '--zzz'. See 'ptp-symbolic bench --help'."),
         (("nope",), "No such command 'nope'. See 'ptp-symbolic --help'."),
     ):
         done = call(*words)
