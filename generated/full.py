@@ -101,7 +101,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "077ed13411e1d0e2"
+MODEL_HASH = "92b6e3417a56047e"
 NAME = "full"
 TITLE = "Both axes of the thesis, all drives"
 # How many numbers `prepare` writes.
@@ -409,13 +409,12 @@ def guard_values(t, x, u, p, slide_pan, slide_tilt, side_pan, active_pan):
     abs_load_torque_tilt = abs(load_torque_tilt)
     forward_tilt = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt - forward_tilt_term
     backward_tilt = 0.5 * abs_load_torque_tilt * raised_tilt_minus_lowered_tilt + forward_tilt_term
-    separation_pan = -theta_pan_minus_theta_gear_pan
     upper_pan = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (-half_gap_pan
         - theta_pan_minus_theta_gear_pan))
     lower_pan = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (half_gap_pan
         - theta_pan_minus_theta_gear_pan))
     return (holding_pan, forward_pan, backward_pan, holding_tilt, forward_tilt, backward_tilt,
-        separation_pan, half_gap_pan, upper_pan, lower_pan)
+        -theta_pan_minus_theta_gear_pan, half_gap_pan, upper_pan, lower_pan)
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -1995,4 +1994,4 @@ EFFECTS = (
      "linear actuator with lead screw and linkage",
      "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6", "", False),
 )
-# END sha256 e2576e5d223d32c37986fc97781de60f7c2cca412775473c4dda6fa74c930aaf
+# END sha256 6db363fff21320604458ce63c6ffa294b0ac8fd7bc83e02d983cd74b810e2494

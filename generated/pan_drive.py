@@ -32,7 +32,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "2708a5dc58b9ea67"
+MODEL_HASH = "d5359052a93d2a54"
 NAME = "pan_drive"
 TITLE = "Pan drive of the thesis"
 # How many numbers `prepare` writes.
@@ -186,13 +186,12 @@ def guard_values(t, x, u, p, slide_pan, side_pan, active_pan):
     holding_pan = K_t_pan_N_pan * i_pan - shaft_torque_pan
     forward_pan = F_s_pan * (a_F_s_pan + 1.0)
     backward_pan = F_s_pan * (1.0 - a_F_s_pan)
-    separation_pan = -theta_pan_minus_theta_gear_pan
     upper_pan = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (-half_gap_pan
         - theta_pan_minus_theta_gear_pan))
     lower_pan = (d_shaft_pan_omega_gear_pan_minus_omega_pan + k_shaft_pan * (half_gap_pan
         - theta_pan_minus_theta_gear_pan))
-    return (holding_pan, forward_pan, backward_pan, separation_pan, half_gap_pan, upper_pan,
-        lower_pan)
+    return (holding_pan, forward_pan, backward_pan, -theta_pan_minus_theta_gear_pan, half_gap_pan,
+        upper_pan, lower_pan)
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -600,4 +599,4 @@ EFFECTS = (
     ("dc_motor", "pan", ("L_pan", "R_pan", "K_t_pan", "J_motor_pan", "N_pan"), (), (),
      "geared DC motor", "thesis Eq. 3.10, Eq. 3.11 with erratum 8", "", False),
 )
-# END sha256 e21718c0a7ebf8ee0233fb8ced3e991f57204ac047108edfb0b912afd6837e1e
+# END sha256 70c9612f76ded493b97cfb1e025fe5c6826318441368fafafcb4f13edaeda995

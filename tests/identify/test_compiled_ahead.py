@@ -1,11 +1,11 @@
 """What is compiled ahead for a fit is what a fit calls, with the types that it calls it with."""
 
 import numpy as np
-from ptp_symbolic.numeric.identify.equation_preparation import prepare_equation_space
 
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.data import Log
 from ptp_symbolic.numeric.identify import along_motion, evaluate, weak_form
+from ptp_symbolic.numeric.identify.equation_space import prepare_equation_space
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from tests.identify.test_states_along import AXES, PERIOD, PLATFORM
 

@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from ptp_symbolic.numeric.identify.sample_averages import thinned
 from scipy.integrate import quad, solve_ivp
 
 import ptp_symbolic as ptp
@@ -19,7 +18,7 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.data import Log, read_log
 from ptp_symbolic.numeric.data.latency import input_averages
 from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate
-from ptp_symbolic.numeric.identify.run import with_inputs
+from ptp_symbolic.numeric.identify.run import thinned, with_inputs
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.platform import Platform, platform_text, read_platform
 

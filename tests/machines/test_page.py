@@ -48,8 +48,14 @@ def machine() -> dict[str, Any]:
 PARTS = ("train", "validate")
 
 
+def shown(machines: list[dict]) -> str:
+    """The page of some machines, with plain spaces before its signs of percent."""
+    page = render_machines({"version": "1", "date": "today", "machines": machines})
+    return page.replace("\u00a0", " ")
+
+
 def test_candidates_errors_and_files_of_a_machine_are_on_its_page() -> None:
-    page = render_machines({"version": "1", "date": "today", "machines": [machine()]})
+    page = shown([machine()])
     assert "80.0 % (70.0 to 90.0 %)" in page and "accepted" in page
     assert (
         "31.0 % (10.0 to 50.0 %)" in page
@@ -67,7 +73,7 @@ def test_a_set_that_grew_along_the_motion_is_accepted_with_what_its_members_gain
         for effect, share in (("backlash", 0.6), ("cogging", 0.2))
     ]
     one = {**machine(), "ranking": [grown], "added": members}
-    page = render_machines({"version": "1", "date": "today", "machines": [one]})
+    page = shown([one])
     assert "accepted by the torque along the measured motion" in page
     assert "backlash 60.0 % (30.0 to 90.0 %), cogging 20.0 % (10.0 to 30.0 %)" in page
 
@@ -85,7 +91,7 @@ def test_a_force_put_in_is_on_the_page_with_what_was_found_of_it() -> None:
     missed = {**row, "title": "a spring", "named": [], "wave": None}
     missed["size"] = {**row["size"], "found": None}
     put_in = {"title": "Forces", "source": "", "put_in": [row, missed]}
-    page = render_machines({"version": "1", "date": "today", "machines": [put_in]})
+    page = shown([put_in])
     assert "<b>cogging</b>, input_delay" in page
     assert "0.849 N" in page and "0.831" in page and "314.2" in page
     assert "not named" in page and "0.000250 m" in page

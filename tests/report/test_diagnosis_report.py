@@ -82,10 +82,11 @@ def test_look_alikes_come_with_the_experiment_that_separates_them() -> None:
 
 def test_gains_are_in_percent_with_their_interval() -> None:
     html = page("explained")
-    cards = html[: html.index("<nav")]
+    cards = html[: html.index("<nav")].replace("\u00a0", " ")
     assert "98.7 % (98.5 to 98.9 %), cross-validated on the training runs" in cards
     assert "on the validation runs falls by 97.5 % (97.1 to 97.9 %)" in cards
     table = html[html.index('<section id="ranking">') : html.index('<section id="limits">')]
+    table = table.replace("\u00a0", " ")
     assert "92.0 % (91.8 to 92.2 %)" in table
     assert "−0.2 % (−0.4 to 0.0 %)" in table
     assert '<td class="gain">–</td>' in table  # a fit without derivatives has no gain
@@ -93,7 +94,7 @@ def test_gains_are_in_percent_with_their_interval() -> None:
 
 def test_the_closest_fit_is_shown_with_its_figures_where_nothing_was_confirmed() -> None:
     html = page("unexplained")
-    card = html[html.index('id="closest"') : html.index("<nav")]
+    card = html[html.index('id="closest"') : html.index("<nav")].replace("\u00a0", " ")
     for text in ("base_tilt", "not confirmed", "0.08731", "5.002°", "29.8 counts rms"):
         assert text in card
     assert "98.7 % (98.5 to 98.9 %)" in card
@@ -159,6 +160,7 @@ def test_two_effects_are_both_in_the_headline() -> None:
 def test_candidates_are_ordered_by_training_error_and_those_not_fitted_come_last() -> None:
     html = page("explained")
     table = html[html.index('<section id="ranking">') : html.index('<section id="limits">')]
+    table = table.replace("\u00a0", " ")
     shown, folded = table.split("<details>")
     order = re.findall(r'<th scope="row"><code>(\w+)</code>', shown)
     assert order[:3] == ["base_tilt", "cable_spring", "constant_torque"]

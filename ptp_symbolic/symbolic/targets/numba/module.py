@@ -146,7 +146,8 @@ def _guard_values(kernel: Kernel, words: Mapping[str, str], language: Language) 
         name = str(target)
         if isinstance(target, Entry):
             name = words[name] if words[name] not in taken else f"{words[name]}_"
-            results[target.indices[0]] = source if assignment.expression.is_Symbol else name
+            bare = assignment.expression.is_Symbol or (-assignment.expression).is_Symbol
+            results[target.indices[0]] = source if bare else name
         if not isinstance(target, Entry) or results[target.indices[0]] == name:
             rows.append(assignment_text(name, source, INNER_WIDTH))
     rows.append(tuple_text("return ", [results[k] for k in sorted(results)], INNER_WIDTH))
