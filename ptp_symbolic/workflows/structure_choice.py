@@ -132,8 +132,8 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
         untried = {**untried, **{key: why for each in every for key in each.keys}}
         is_cut_short = is_stopped or terms.found.is_cut_short
         return Choice(terms.outcome, terms.outcome, (), untried, is_cut_short)
-    found = terms.found.chosen
-    fitted = fit_structures(platform, every, logs, found.values if found.candidates else None)
+    known = terms.found.chosen.values if terms.is_noise_alone else None
+    fitted = fit_structures(platform, every, logs, known)
     if not terms.is_noise_alone and not fitted.quiet and not logs.allowance.is_over:
         fitted = _over_windows(platform, fitted, terms, logs)
         if not fitted.quiet and fitted.order and not logs.allowance.is_over:

@@ -91,9 +91,8 @@ def fit_structures(
     """Fit a platform and `every` structure one step away from it: a few iterations each from their
     starts, the better half to the end of whole runs.
 
-    They are started beside the parameters `known` from the best fit so far, else beside those of
-    the platform's: where a delay makes up for a lag, these are the right ones, and the platform's
-    alone are not.
+    They are started beside the parameters `known` from a fit that leaves noise alone, else beside
+    those of the platform's: where a delay makes up for a lag, the former are right, the latter not.
     """
     logs.progress(f"fitting {len(every)} structures one step away")
     alone = _begun(platform, None, logs, {}).finished()
