@@ -149,7 +149,7 @@ class _Wanted:
         t: FloatArray,
         by: tuple[str, ...] = (),
     ) -> _Wanted:
-        """What `outputs` ask for, and derivatives of it. Raises InputError for unknown names, and
+        """What `outputs` request, and derivatives of it. Raises InputError for unknown names, and
         for what has no derivative.
         """
         for name in by:

@@ -1,4 +1,4 @@
-"""Fits that are stuck: parameters that strayed, places in a gap that have followed them."""
+"""Fits that are stuck: parameters outside their prior range, places in a gap that followed them."""
 
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -62,7 +62,7 @@ def task() -> Iterator[Task]:
     ("inertia", "damping", "expected"),
     [(0.05, 1.0, []), (0.19, 0.26, []), (0.21, 0.26, ["J_pan"]), (0.012, 0.0, [*NAMES])],
 )
-def test_parameters_further_off_than_a_start_may_be_have_strayed(
+def test_parameters_further_off_than_a_start_may_be_are_outside_their_prior_range(
     task: Task, inertia: float, damping: float, expected: list[str]
 ) -> None:
     """Four times either way: 0.0125 to 0.2 kg m^2 and 0.25 to 4 N m s/rad."""
@@ -70,7 +70,7 @@ def test_parameters_further_off_than_a_start_may_be_have_strayed(
     assert [f.name for f in found] == expected
 
 
-def test_a_fit_whose_parameters_strayed_is_led_back(task: Task) -> None:
+def test_a_fit_whose_parameters_are_outside_their_range_is_restarted(task: Task) -> None:
     stuck = fitted(task, (), {**task.fixed, "J_pan": 1e-3, "d_shaft_pan": 0.0}, None)
     assert not leaves_white_noise(stuck, NOTHING_CARRIED)
     found = restarted_fit(task, stuck, NOTHING_CARRIED)
@@ -79,16 +79,18 @@ def test_a_fit_whose_parameters_strayed_is_led_back(task: Task) -> None:
         assert found.values[name] == pytest.approx(TRUTH[name], rel=0.1)
 
 
-def test_a_declared_model_that_strayed_is_led_back_before_its_end_is_believed(task: Task) -> None:
-    """Nothing else is tried where nothing has strayed, and nothing is gained by the way back."""
-    strayed = fitted(task, (), {**task.fixed, "J_pan": 1e-3, "d_shaft_pan": 0.0}, None)
-    assert not is_near_noise_floor(strayed)
-    assert leaves_white_noise(_back_in_range(task, strayed), NOTHING_CARRIED)
-    assert _back_in_range(replace(task, material=1.0), strayed) is strayed
+def test_a_declared_model_outside_its_prior_range_is_restarted_before_its_end_is_believed(
+    task: Task,
+) -> None:
+    """Nothing else is tried where nothing is outside, and nothing is gained by a restart."""
+    outside = fitted(task, (), {**task.fixed, "J_pan": 1e-3, "d_shaft_pan": 0.0}, None)
+    assert not is_near_noise_floor(outside)
+    assert leaves_white_noise(_back_in_range(task, outside), NOTHING_CARRIED)
+    assert _back_in_range(replace(task, material=1.0), outside) is outside
     wrong = fitted(task, (), {**task.fixed, "J_pan": 0.19}, None)
     assert not is_near_noise_floor(wrong)
     assert _back_in_range(task, wrong) is wrong
-    failed = replace(strayed, fit=replace(strayed.fit, failed="not finite", cost=np.inf))
+    failed = replace(outside, fit=replace(outside.fit, failed="not finite", cost=np.inf))
     assert leaves_white_noise(_back_in_range(replace(task, material=1.0), failed), NOTHING_CARRIED)
 
 

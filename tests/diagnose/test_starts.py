@@ -60,17 +60,17 @@ def test_fits_begin_in_the_other_valleys_the_deepest_first(
 
 
 @pytest.mark.parametrize(
-    ("strayed", "back"), [(1.01 * FAR_OFF, [1.0, FAR_OFF, 1.0 / FAR_OFF]), (0.99 * FAR_OFF, [])]
+    ("outside", "back"), [(1.01 * FAR_OFF, [1.0, FAR_OFF, 1.0 / FAR_OFF]), (0.99 * FAR_OFF, [])]
 )
-def test_fits_begin_where_a_parameter_that_strayed_is_back(
-    strayed: float, back: list[float], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_fits_begin_where_a_parameter_outside_its_range_is_back(
+    outside: float, back: list[float], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Though every run has one place to begin from, and whatever it leaves."""
     with spring_table(tmp_path, stiffness=0.0) as task:
         proposals = propose(task)
         monkeypatch.setattr(refits, "weakly_identified", lambda _: [])
         (damping,) = (f for f in task.free if f.name == "b_pan")
-        there = proposals.start | {"b_pan": strayed * damping.start}
+        there = proposals.start | {"b_pan": outside * damping.start}
         begun = refits.from_far_off(task, proposals, fitted(task, (), there, None))
     found = [t.values["b_pan"] / damping.start for t in begun]
     assert found == pytest.approx(back, rel=1e-9)

@@ -14,9 +14,9 @@ from ptp_symbolic.cli.commands import commands
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, read_platform
 from ptp_symbolic.report.changes import render_changes, shown_of
-from ptp_symbolic.report.derivation import has_warning
 from ptp_symbolic.symbolic.documents.latex import symbol_latex
 from ptp_symbolic.workflows.result import read_diagnosis
+from tests.report.latex_reading import has_warning
 from tests.report.synthetic_diagnosis import synthetic_diagnosis
 
 

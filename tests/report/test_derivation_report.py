@@ -15,7 +15,7 @@ import pytest
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models.emission import module_of
 from ptp_symbolic.platform import EffectDeclaration, Platform, preset_names, read_platform
-from ptp_symbolic.report.derivation import has_warning, read_points, render_derivation
+from ptp_symbolic.report.derivation import read_points, render_derivation
 from ptp_symbolic.report.derivation.document import emitted, title_block
 from ptp_symbolic.report.derivation.linear import linearised
 from ptp_symbolic.report.derivation.operating_points import usual_points
@@ -29,6 +29,7 @@ from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.documents.latex import symbol_latex
 from ptp_symbolic.symbolic.effects import EFFECTS
 from tests.drawing.platforms import carriage, offset_platform, platform_of_every_kind
+from tests.report.latex_reading import has_warning
 
 pytestmark = pytest.mark.early
 

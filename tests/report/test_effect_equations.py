@@ -11,13 +11,13 @@ import pytest
 
 from ptp_symbolic.models import variants
 from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
-from ptp_symbolic.report.derivation import has_warning
 from ptp_symbolic.report.diagnosis import render_diagnosis
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.documents.effect_equations import effect_equations
 from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.effects import EFFECTS
 from ptp_symbolic.workflows.write_up import equations_tex
+from tests.report.latex_reading import has_warning
 from tests.report.synthetic_diagnosis import synthetic_diagnosis
 
 PLATFORMS = Path(__file__).parent.parent / "platforms"

@@ -12,7 +12,6 @@ import sympy as sp
 
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.report.derivation import effects as effects_module
-from ptp_symbolic.report.derivation import has_warning
 from ptp_symbolic.report.derivation.curves import PACKAGES
 from ptp_symbolic.report.derivation.effects import effect_section
 from ptp_symbolic.report.derivation.power import judged
@@ -26,6 +25,7 @@ from ptp_symbolic.symbolic.documents.laws import laws
 from ptp_symbolic.symbolic.documents.statements import Statement, statements
 from ptp_symbolic.symbolic.effects import EFFECTS, Effect
 from tests.effects.bases import IDS
+from tests.report.latex_reading import has_warning
 from tests.report.sections import law_of, section
 
 ZERO = sp.Integer(0)

@@ -14,7 +14,6 @@ from click.testing import CliRunner
 
 from ptp_symbolic.cli.report import thesis
 from ptp_symbolic.platform import read_platform
-from ptp_symbolic.report.derivation import has_warning
 from ptp_symbolic.report.pdf import compile_pdf
 from ptp_symbolic.thesis import document
 from ptp_symbolic.thesis.chapter_figures import all_figures
@@ -23,6 +22,7 @@ from ptp_symbolic.thesis.figures import CURVES, STYLE, drawn
 from ptp_symbolic.thesis.response_figures import friction_of
 from ptp_symbolic.thesis.responses import response
 from ptp_symbolic.thesis.wording import text_latex
+from tests.report.latex_reading import has_warning
 
 pytestmark = [pytest.mark.early, pytest.mark.long]
 

@@ -196,10 +196,10 @@ def back_in_prior_range(task: Task, trial: Trial) -> list[Trial]:
     """The trial with declared parameters outside their prior range back at their starts, and at the
     ends of that range, not yet fitted; none where none is outside.
     """
-    run, strayed = task.executor, outside_prior_range(task, trial.values)
+    run, outside = task.executor, outside_prior_range(task, trial.values)
     begun: list[Trial] = []
-    for factor in (1.0, FAR_OFF, 1.0 / FAR_OFF) if strayed else ():
-        back = {n: inside(f, factor * f.start) for f in strayed for n in f.names}
+    for factor in (1.0, FAR_OFF, 1.0 / FAR_OFF) if outside else ():
+        back = {n: inside(f, factor * f.start) for f in outside for n in f.names}
         values = trial.values | back
         z, parent = trial.fit.z, trial.fit
         begun.append(fitted(task, trial.candidates, values, z, parent=parent, executor=run))
@@ -564,8 +564,8 @@ def _back_in_range(task: Task, trial: Trial) -> Trial:
     `restarts`), if some iterations gain materially: one that went where it does nothing has no
     derivative that points back, and what compensates it is no effect.
     """
-    strayed = outside_prior_range(task, trial.values)
-    if not strayed or (is_near_noise_floor(trial) and not trial.fit.failed):
+    outside = outside_prior_range(task, trial.values)
+    if not outside or (is_near_noise_floor(trial) and not trial.fit.failed):
         return trial
     left = halving(task, restarts(task, trial), 1)
     if not left or not (trial.fit.failed or gain(left[0], trial).share >= task.material):

@@ -1,7 +1,6 @@
 """The derivation report, a file for every section."""
 
 from ptp_symbolic.report.derivation.document import render_derivation
-from ptp_symbolic.report.derivation.log import has_warning
 from ptp_symbolic.report.derivation.operating_points import read_points
 
-__all__ = ["has_warning", "read_points", "render_derivation"]
+__all__ = ["read_points", "render_derivation"]
