@@ -32,6 +32,7 @@ DECIDING = (
     "pyproject.toml",
     "scripts/build_backend.py",
     "generated",
+    "ptp_symbolic/numeric/identify",
     "ptp_symbolic/numeric/simulation",
     "ptp_symbolic/numeric/runtime",
 )
@@ -115,7 +116,7 @@ def build_editable(
 
 
 def compile_ahead() -> None:
-    """Fill the folder of compiled kernels anew; leave none where that fails."""
+    """Fill the folder of compiled kernels anew with what compiles; keep it where all of it does."""
     shutil.rmtree(COMPILED, ignore_errors=True)
     if not is_wanted():
         return
@@ -126,10 +127,11 @@ def compile_ahead() -> None:
         with tempfile.TemporaryDirectory() as scratch:
             made = Path(scratch, "compiled")
             made.mkdir()
-            if not compiled_into(made, Path(scratch)):
+            whole = compiled_into(made, Path(scratch))
+            if not any(made.iterdir()):
                 return
             shutil.copytree(made, COMPILED)
-        if folder is not None:
+        if whole and folder is not None:
             keep(COMPILED, folder)
     # A wheel with machine code is one for this kind of machine.
     dist.Distribution.has_ext_modules = lambda self: True
@@ -144,7 +146,7 @@ def keep(made: Path, folder: Path) -> None:
 
 
 def compiled_into(folder: Path, scratch: Path) -> bool:
-    """Compile every runner and model, one process for each, into a folder."""
+    """Compile every runner and model, one process for each, into a folder; whether all compiled."""
     sys.path.insert(0, str(CHECKOUT))
     try:
         from ptp_symbolic.numeric.identify.ahead import COMPILE_FIT

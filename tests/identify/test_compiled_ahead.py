@@ -1,10 +1,12 @@
 """What is compiled ahead for a fit is what a fit calls, with the types that it calls it with."""
 
+import numba
 import numpy as np
+import pytest
 
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.data import Log
-from ptp_symbolic.numeric.identify import along_motion, evaluate, weak_form
+from ptp_symbolic.numeric.identify import ahead, along_motion, evaluate, weak_form
 from ptp_symbolic.numeric.identify.equation_space import prepare_equation_space
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from tests.identify.test_states_along import AXES, PERIOD, PLATFORM
@@ -27,3 +29,15 @@ def test_no_function_is_compiled_for_other_types() -> None:
         assert function.signatures in ([], [types]), function.__name__
         called += [function.__name__] if function.signatures else []
     assert {"further_states", "torques_along", "averages"} <= set(called)
+
+
+def test_what_no_cache_holds_is_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A function that was called before, or found on the disk, would hide that it is not."""
+    types, noted = (numba.float64,), []
+    twice = numba.njit(lambda x: 2.0 * x)
+    for module, functions in ((weak_form, ((twice, types),)), (evaluate, ()), (along_motion, ())):
+        monkeypatch.setattr(module, "AHEAD", functions)
+    monkeypatch.setattr(ahead, "note_compiled", noted.append)
+    ahead.compile_all()
+    assert twice.signatures == [types]
+    assert noted == [ahead.FIT]

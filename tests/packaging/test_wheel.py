@@ -156,7 +156,9 @@ def test_what_one_build_compiled_is_kept_for_the_next_of_the_same_sources(
 
     def compiler(folder: Path, scratch: Path) -> bool:
         made.append(kernel.read_text())
-        (folder / "run.code").write_text(f"machine code of {made[-1]}")
+        if made[-1] != "an error":
+            (folder / "run.code").write_text(f"machine code of {made[-1]}")
+        (folder / "fit.code").write_text("machine code of a fit")
         return made[-1] != "an error"
 
     monkeypatch.setattr(build, "CHECKOUT", here)
@@ -175,7 +177,7 @@ def test_what_one_build_compiled_is_kept_for_the_next_of_the_same_sources(
     for _ in range(2):
         kernel.write_text("an error")
         build.compile_ahead()
-        assert not compiled.exists()
+        assert [path.name for path in compiled.iterdir()] == ["fit.code"]
     assert made[2:] == ["an error"] * 2
 
 

@@ -19,5 +19,5 @@ def begin_fit() -> None:
 def compile_all() -> None:
     """Compile them, or find them compiled."""
     for function, types in (*weak_form.AHEAD, *evaluate.AHEAD, *along_motion.AHEAD):
-        function.get_compile_result(types)
+        function.compile(types)
     note_compiled(FIT)
