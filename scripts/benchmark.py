@@ -59,9 +59,8 @@ from ptp_symbolic.api.bench import computer
 from ptp_symbolic.atomic_files import write_files_atomically
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation import integration
+from ptp_symbolic.numeric.simulation import inputs, integration
 from ptp_symbolic.numeric.simulation.integration import Solution, integrate
-from ptp_symbolic.numeric.simulation.signals import inputs
 from ptp_symbolic.platform import ParameterDeclaration, read_platform
 
 WANTED = 1e-8  # rad

@@ -29,7 +29,7 @@ import ptp_symbolic as ptp
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.gpu.batch import cuda_library, integrate_on_gpu
 from ptp_symbolic.numeric.gpu.machine import Layout
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, parse_profile
+from ptp_symbolic.numeric.simulation.inputs import InputSignal, parse_profile
 
 DURATION = 10.0  # s
 CASES = {

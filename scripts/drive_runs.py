@@ -9,10 +9,9 @@ import numpy as np
 
 from ptp_symbolic.api.scipy_peer import simulate_with_scipy
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation import integration
+from ptp_symbolic.numeric.simulation import inputs, integration
 from ptp_symbolic.numeric.simulation.integration import Solution, integrate, tolerance_weights
 from ptp_symbolic.numeric.simulation.kernels.records import DONE
-from ptp_symbolic.numeric.simulation.signals import inputs
 
 END = 10.0  # s
 GRID, LAST = np.linspace(0.0, END, 10001), np.array([0.0, END])

@@ -13,8 +13,8 @@ import numpy as np
 from ptp_symbolic import simulate
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.inputs import InputSignal, constant, ramp, step
 from ptp_symbolic.numeric.simulation.run import Trajectory
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, constant, ramp, step
 from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
 
 KINDS = ("averaged", "switching", "bipolar")

@@ -16,7 +16,7 @@ from numba import njit
 from timing import Row, best
 
 import ptp_symbolic
-from ptp_symbolic.numeric.runtime.loader import COMMITTED
+from ptp_symbolic.numeric.runtime.model import COMMITTED
 from ptp_symbolic.numeric.simulation.kernels.records import KERNEL
 
 

@@ -19,6 +19,7 @@ from ptp_symbolic.api.simulation import STATES
 from ptp_symbolic.api.values import parameter_values, state_vector
 from ptp_symbolic.errors import InputError, unknown, wrong_type
 from ptp_symbolic.numeric.simulation import lanes
+from ptp_symbolic.numeric.simulation.inputs import InputSignal, constant
 from ptp_symbolic.numeric.simulation.integration import METHODS, checked_accuracy
 from ptp_symbolic.numeric.simulation.lanes import (
     BatchProblem,
@@ -27,7 +28,6 @@ from ptp_symbolic.numeric.simulation.lanes import (
     outputs_along,
 )
 from ptp_symbolic.numeric.simulation.run import chosen_method, output_times
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, constant
 from ptp_symbolic.platform.units import quantity
 
 FloatArray = NDArray[np.float64]

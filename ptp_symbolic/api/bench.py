@@ -21,6 +21,7 @@ from ptp_symbolic.api.machine import Machine, Source, load
 from ptp_symbolic.api.scipy_peer import beyond_scipy, simulate_with_scipy
 from ptp_symbolic.api.simulation import sensitivity, simulate
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.simulation.inputs import InputSignal, as_signals
 from ptp_symbolic.numeric.simulation.integration import (
     EXPLICIT,
     default_method,
@@ -29,7 +30,6 @@ from ptp_symbolic.numeric.simulation.integration import (
 from ptp_symbolic.numeric.simulation.kernels.records import KERNEL
 from ptp_symbolic.numeric.simulation.lanes import cores
 from ptp_symbolic.numeric.simulation.run import input_table
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, as_signals
 
 FloatArray = NDArray[np.float64]
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ptp_symbolic.errors import InputError, unknown, wrong_type
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import (
+from ptp_symbolic.numeric.simulation.inputs import (
     PROFILES,
     InputSignal,
     constant,

@@ -15,8 +15,7 @@ from ptp_symbolic.api.display import Displayed, Table
 from ptp_symbolic.api.linearization import Linearization
 from ptp_symbolic.api.values import Values, input_vector, parameter_vector, state_vector
 from ptp_symbolic.errors import InputError, unknown, wrong_type
-from ptp_symbolic.numeric.runtime.loader import load_model, load_module, model_names
-from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.runtime.model import Model, load_model, load_module, model_names
 from ptp_symbolic.platform import Platform, effect_key
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import constant, parse_profile, stack, values_at
+from ptp_symbolic.numeric.simulation.inputs import constant, parse_profile, stack, values_at
 from ptp_symbolic.platform.units import quantity
 
 FloatArray = NDArray[np.float64]

@@ -13,14 +13,14 @@ from ptp_symbolic.api.display import Displayed, Table
 from ptp_symbolic.api.extras import extra_library
 from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.run import Trajectory
-from ptp_symbolic.numeric.simulation.signals.inputs import (
+from ptp_symbolic.numeric.simulation.inputs import (
     InputSignal,
     constant,
     delays_of,
     stack,
     values_at,
 )
+from ptp_symbolic.numeric.simulation.run import Trajectory
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

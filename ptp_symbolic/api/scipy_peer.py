@@ -13,9 +13,9 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.runtime.element_layout import contact_count, contact_guards
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.events.modes import switch_contacts, violation
+from ptp_symbolic.numeric.simulation.input_values import evaluate_inputs
+from ptp_symbolic.numeric.simulation.inputs import InputTable
 from ptp_symbolic.numeric.simulation.kernels.records import KERNEL, Equations
-from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
-from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
 
 FloatArray = NDArray[np.float64]
 PAST = 1e-11  # s; how far a run is carried past an event, so that the mode has really ended

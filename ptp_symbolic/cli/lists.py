@@ -153,7 +153,7 @@ def _as_row(parameter: Mapping[str, Any]) -> dict[str, str]:
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def models(as_json: bool) -> None:
     """List the committed models."""
-    from ptp_symbolic.numeric.runtime.loader import load_model, model_names
+    from ptp_symbolic.numeric.runtime.model import load_model, model_names
 
     found = [(name, load_model(name)) for name in model_names()]
     _show(

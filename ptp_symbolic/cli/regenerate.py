@@ -16,7 +16,7 @@ def regenerate(models: tuple[str, ...], out: Path | None, check: bool) -> int:
     """
     from ptp_symbolic.models.committed import regenerate as emit
     from ptp_symbolic.models.committed import stray_modules
-    from ptp_symbolic.numeric.runtime.loader import generated_folder
+    from ptp_symbolic.numeric.runtime.model import generated_folder
 
     if out is not None:
         return _emit_platforms(models, out, check)

@@ -19,7 +19,7 @@ class WithProfiles(click.Command):
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the list; read from where it is defined, when it is asked for."""
-        from ptp_symbolic.numeric.simulation.signals.inputs import profile_forms
+        from ptp_symbolic.numeric.simulation.inputs import profile_forms
 
         with formatter.section("Profiles (times in s, values in the SI unit of the input)"):
             formatter.write_dl(profile_forms())
@@ -184,7 +184,7 @@ def given_signals(
 ) -> tuple[dict[str, Any], float]:
     """The inputs as signals by name, and the end of the simulation in s."""
     from ptp_symbolic.numeric.data import read_inputs
-    from ptp_symbolic.numeric.simulation.signals.inputs import as_signals, table
+    from ptp_symbolic.numeric.simulation.inputs import as_signals, table
 
     signals: dict[str, Any] = {}
     end = 10.0 if duration is None else duration

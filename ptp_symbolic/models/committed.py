@@ -9,7 +9,7 @@ from pathlib import Path
 from ptp_symbolic.atomic_files import write_text_if_changed
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models.emission import module_of
-from ptp_symbolic.numeric.runtime.loader import COMMITTED, generated_folder
+from ptp_symbolic.numeric.runtime.model import COMMITTED, generated_folder
 from ptp_symbolic.platform import Platform, platform_file, read_platform
 from ptp_symbolic.symbolic.derivation.placement import refuse_undeclared
 

@@ -3,8 +3,7 @@
 from dataclasses import replace
 
 from ptp_symbolic.models.module_cache import emitted
-from ptp_symbolic.numeric.runtime.loader import load_module
-from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.runtime.model import Model, load_module
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.symbolic.derivation.assembly import assemble

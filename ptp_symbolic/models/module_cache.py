@@ -23,7 +23,7 @@ import sympy as sp
 
 from ptp_symbolic.atomic_files import write_text_if_changed
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.runtime.loader import verify
+from ptp_symbolic.numeric.runtime.model import verify
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.targets.numba.module import module_text

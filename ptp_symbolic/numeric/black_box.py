@@ -27,9 +27,9 @@ from ptp_symbolic.numeric.identify.evaluate import Tolerance, start_state
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.weak_form import weak_average
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.inputs import delayed, delays_of
 from ptp_symbolic.numeric.simulation.integration import Accuracy, integrate
 from ptp_symbolic.numeric.simulation.kernels.records import DONE
-from ptp_symbolic.numeric.simulation.signals.inputs import delayed, delays_of
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

@@ -16,6 +16,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from ptp_symbolic.errors import unknown
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.inputs import (
+    InputSignal,
+    InputTable,
+    delay_columns,
+    slopes_at,
+    values_at,
+)
 from ptp_symbolic.numeric.simulation.integration import (
     IMPLICIT,
     METHODS,
@@ -44,13 +51,6 @@ from ptp_symbolic.numeric.simulation.run import (
     output_times,
     refuse_failure,
     start_of,
-)
-from ptp_symbolic.numeric.simulation.signals.inputs import (
-    InputSignal,
-    InputTable,
-    delay_columns,
-    slopes_at,
-    values_at,
 )
 
 FloatArray = NDArray[np.float64]

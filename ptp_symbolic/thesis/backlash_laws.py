@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 import ptp_symbolic
 from ptp_symbolic.models.emission import emit
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.inputs import multisine
 from ptp_symbolic.numeric.simulation.run import Trajectory
-from ptp_symbolic.numeric.simulation.signals.inputs import multisine
 from ptp_symbolic.platform import EffectDeclaration, Platform
 from ptp_symbolic.thesis.friction import drive_values
 from ptp_symbolic.thesis.responses import as_printed, pan_drive

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import ptp_symbolic
-from ptp_symbolic.numeric.simulation.signals.inputs import step
+from ptp_symbolic.numeric.simulation.inputs import step
 from ptp_symbolic.thesis.backlash_laws import restitution
 from ptp_symbolic.thesis.friction import drive_values
 from ptp_symbolic.thesis.items import Item, unprinted

@@ -15,8 +15,8 @@ from scipy.optimize import bisect, minimize_scalar
 import ptp_symbolic
 from ptp_symbolic.models.emission import emit
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.inputs import InputSignal, ramp, table
 from ptp_symbolic.numeric.simulation.run import Trajectory
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, ramp, table
 from ptp_symbolic.platform import EffectDeclaration, Platform
 from ptp_symbolic.thesis import printed
 from ptp_symbolic.thesis.friction import mean_friction

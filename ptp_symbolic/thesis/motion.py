@@ -8,7 +8,7 @@ import sympy as sp
 from numpy.typing import NDArray
 from scipy.interpolate import PPoly
 
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, cubic_transition
+from ptp_symbolic.numeric.simulation.inputs import InputSignal, cubic_transition
 from ptp_symbolic.platform import AXES, Platform
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.mechanics import kinematics

@@ -13,7 +13,7 @@ from scipy.optimize import least_squares
 import ptp_symbolic
 from ptp_symbolic.models.emission import emit
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, ramp
+from ptp_symbolic.numeric.simulation.inputs import InputSignal, ramp
 from ptp_symbolic.platform import EffectDeclaration, Platform
 from ptp_symbolic.thesis import printed
 from ptp_symbolic.thesis.friction import drive_values

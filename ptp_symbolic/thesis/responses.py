@@ -12,8 +12,8 @@ from scipy.optimize import brentq
 
 import ptp_symbolic
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.inputs import InputSignal, ramp, trapezoid
 from ptp_symbolic.numeric.simulation.run import Trajectory
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, ramp, trapezoid
 from ptp_symbolic.thesis import printed
 from ptp_symbolic.thesis.friction import drive_values, mean_friction
 from ptp_symbolic.thesis.items import Item, Kind, unprinted

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal
+from ptp_symbolic.numeric.simulation.inputs import InputSignal
 from ptp_symbolic.platform import AXES, read_platform
 from ptp_symbolic.thesis import printed
 from ptp_symbolic.thesis.items import Item, compared, unprinted

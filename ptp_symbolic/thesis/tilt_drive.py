@@ -16,7 +16,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 import ptp_symbolic
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, constant, trapezoid
+from ptp_symbolic.numeric.simulation.inputs import InputSignal, constant, trapezoid
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.mechanics import kinematics

@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm, solve_continuous_are
 
 import ptp_symbolic as ptp
-from ptp_symbolic.numeric.simulation.signals.inputs import ramp
+from ptp_symbolic.numeric.simulation.inputs import ramp
 
 J, B = 0.6, 0.4
 TILT = {"J_x_tilt": 0.01, "J_y_tilt": 0.2, "J_z_tilt": 1e-12, "b_tilt": B}

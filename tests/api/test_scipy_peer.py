@@ -5,8 +5,8 @@ import pytest
 
 import ptp_symbolic
 from ptp_symbolic.api.scipy_peer import simulate_with_scipy
+from ptp_symbolic.numeric.simulation.inputs import stack, step
 from ptp_symbolic.numeric.simulation.integration import tolerance_weights
-from ptp_symbolic.numeric.simulation.signals.inputs import stack, step
 
 
 @pytest.mark.parametrize("method", ["LSODA", "DOP853"])

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.runtime.loader import load_module
+from ptp_symbolic.numeric.runtime.model import load_module
 from ptp_symbolic.platform import platform_text, read_platform
 
 

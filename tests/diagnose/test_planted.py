@@ -18,8 +18,8 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.numeric.diagnose.verdict import NOTHING_MISSING
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.inputs import constant, table
 from ptp_symbolic.numeric.simulation.run import Trajectory, simulate
-from ptp_symbolic.numeric.simulation.signals.inputs import constant, table
 from ptp_symbolic.platform import Platform, read_platform
 from ptp_symbolic.symbolic.derivation.placement import place_effects
 from ptp_symbolic.symbolic.effect_interface.effect import Effect

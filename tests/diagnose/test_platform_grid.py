@@ -15,7 +15,7 @@ import pytest
 from ptp_symbolic import simulate
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.numeric.diagnose.candidates import find_candidates, with_all_they_need
-from ptp_symbolic.numeric.simulation.signals.inputs import multisine
+from ptp_symbolic.numeric.simulation.inputs import multisine
 from ptp_symbolic.platform import Platform, read_platform
 from ptp_symbolic.workflows.diagnosis import diagnose_platform
 

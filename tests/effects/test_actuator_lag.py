@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from ptp_symbolic import inverse_dynamics, simulate
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import constant, multisine, ramp
+from ptp_symbolic.numeric.simulation.inputs import constant, multisine, ramp
 from ptp_symbolic.platform import EffectDeclaration, Platform
 
 BODY = EffectDeclaration("rigid_bodies", None, None)

@@ -11,8 +11,8 @@ from ptp_symbolic import sensitivity, simulate
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.events.impacts import RESTING_SPEED
+from ptp_symbolic.numeric.simulation.inputs import constant, multisine
 from ptp_symbolic.numeric.simulation.run import Trajectory
-from ptp_symbolic.numeric.simulation.signals.inputs import constant, multisine
 from ptp_symbolic.platform import EffectDeclaration, Platform
 from tests.independent.rigid_platform import accelerations, mass_matrix
 

@@ -8,7 +8,7 @@ import pytest
 from ptp_symbolic import simulate
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, constant, ramp
+from ptp_symbolic.numeric.simulation.inputs import InputSignal, constant, ramp
 from ptp_symbolic.platform import EffectDeclaration, Platform
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.kane import kane

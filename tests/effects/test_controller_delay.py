@@ -10,7 +10,7 @@ from ptp_symbolic import sensitivity, simulate
 from ptp_symbolic.models import emission
 from ptp_symbolic.models.structures import structures
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import step
+from ptp_symbolic.numeric.simulation.inputs import step
 from ptp_symbolic.platform import EffectDeclaration, Platform
 
 J, L, R, KT, ROTOR, N = 0.4, 5e-3, 5.0, 0.05, 1e-5, 100.0

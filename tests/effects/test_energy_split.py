@@ -18,8 +18,8 @@ from scipy.integrate import cumulative_trapezoid
 from ptp_symbolic import simulate
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.inputs import multisine
 from ptp_symbolic.numeric.simulation.run import Trajectory
-from ptp_symbolic.numeric.simulation.signals.inputs import multisine
 from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
 from ptp_symbolic.symbolic.effects import EFFECTS
 

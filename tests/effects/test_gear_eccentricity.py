@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 from ptp_symbolic import simulate
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import constant
+from ptp_symbolic.numeric.simulation.inputs import constant
 from ptp_symbolic.platform import EffectDeclaration, Platform
 
 EFFECTS = (

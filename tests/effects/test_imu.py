@@ -9,7 +9,7 @@ import pytest
 import ptp_symbolic as ptp
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission
-from ptp_symbolic.numeric.simulation.signals.inputs import ramp
+from ptp_symbolic.numeric.simulation.inputs import ramp
 from ptp_symbolic.platform import EffectDeclaration, Platform, SignalDeclaration
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 

@@ -5,7 +5,7 @@ import pytest
 
 from ptp_symbolic import sensitivity, simulate
 from ptp_symbolic.models import emission
-from ptp_symbolic.numeric.simulation.signals.inputs import (
+from ptp_symbolic.numeric.simulation.inputs import (
     InputSignal,
     cubic_transition,
     ramp,

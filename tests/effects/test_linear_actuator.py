@@ -10,7 +10,7 @@ import sympy as sp
 import ptp_symbolic
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import constant, table
+from ptp_symbolic.numeric.simulation.inputs import constant, table
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, read_platform
 from ptp_symbolic.symbolic.mechanisms.linkage import Linkage
 from ptp_symbolic.symbolic.mechanisms.screw import Screw, ScrewFriction

@@ -11,7 +11,7 @@ from ptp_symbolic import sensitivity, simulate
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, ramp, step
+from ptp_symbolic.numeric.simulation.inputs import InputSignal, ramp, step
 from ptp_symbolic.platform import EffectDeclaration, Platform
 from ptp_symbolic.symbolic.effects import EFFECTS
 

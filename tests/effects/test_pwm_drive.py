@@ -13,7 +13,7 @@ from ptp_symbolic import sensitivity, simulate
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import constant, step, table
+from ptp_symbolic.numeric.simulation.inputs import constant, step, table
 from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
 from ptp_symbolic.platform.writer import platform_text
 

@@ -7,7 +7,7 @@ import sympy as sp
 from ptp_symbolic import simulate
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import constant
+from ptp_symbolic.numeric.simulation.inputs import constant
 from ptp_symbolic.platform import EffectDeclaration, Platform
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 

@@ -8,7 +8,7 @@ import pytest
 from ptp_symbolic import simulate
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import constant, step, table
+from ptp_symbolic.numeric.simulation.inputs import constant, step, table
 from ptp_symbolic.platform import EffectDeclaration, Platform
 
 EFFECTS = (

@@ -12,8 +12,8 @@ from ptp_symbolic.api.machine import Machine
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.gpu.batch import IMPOSSIBLE, GpuStates, integrate_on_gpu, is_simulated
+from ptp_symbolic.numeric.simulation.inputs import constant, parse_profile, table
 from ptp_symbolic.numeric.simulation.kernels.records import DIVERGED, DONE, OUTSIDE
-from ptp_symbolic.numeric.simulation.signals.inputs import constant, parse_profile, table
 from ptp_symbolic.platform import EffectDeclaration, Platform
 from tests.effects.test_backlash_kinds import PUSHED, platform
 

@@ -9,7 +9,7 @@ from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.simulation.signals.inputs import constant, stack
+from ptp_symbolic.numeric.simulation.inputs import constant, stack
 from tests.identify.curves import Floats
 
 MODEL = ptp_symbolic.load("ideal")  # a Fit has one; the statistics never ask it for anything

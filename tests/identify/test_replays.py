@@ -21,7 +21,7 @@ from ptp_symbolic.numeric.identify.intervals import (
 from ptp_symbolic.numeric.identify.least_squares import Effort
 from ptp_symbolic.numeric.identify.run import with_inputs
 from ptp_symbolic.numeric.identify.windows import estimable, with_input_noise
-from ptp_symbolic.numeric.simulation.signals.inputs import constant, stack, table
+from ptp_symbolic.numeric.simulation.inputs import constant, stack, table
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
 from tests.identify.test_windows import COUNT, FREE, INERTIA, MODEL, run_of

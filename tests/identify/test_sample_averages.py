@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.identify.run import samples_within, thinned, with_inputs
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, sampled_signals
+from ptp_symbolic.numeric.simulation.inputs import InputSignal, sampled_signals
 from tests.identify.straight import run_of
 
 

@@ -10,8 +10,8 @@ import ptp_symbolic
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.models.inverse_dynamics import Motion
-from ptp_symbolic.numeric.runtime.loader import load_model
-from ptp_symbolic.numeric.simulation.signals.inputs import constant, multisine
+from ptp_symbolic.numeric.runtime.model import load_model
+from ptp_symbolic.numeric.simulation.inputs import constant, multisine
 from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
 from tests.independent import rigid_platform
 

@@ -12,8 +12,7 @@ import pytest
 import ptp_symbolic
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models.committed import COMMITTED
-from ptp_symbolic.numeric.runtime.loader import generated_folder, load_module
-from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.runtime.model import Model, generated_folder, load_module
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.simplify.steps import simplify_rigid

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import ptp_symbolic
-from ptp_symbolic.numeric.runtime.loader import load_module
+from ptp_symbolic.numeric.runtime.model import load_module
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.targets.numba.module import module_text

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from ptp_symbolic.numeric.runtime.loader import TRAILER
+from ptp_symbolic.numeric.runtime.model import TRAILER
 
 MODULE = """from numba import njit
 
@@ -22,7 +22,7 @@ def cube(x):
 """
 PROGRAM = """import sys
 from pathlib import Path
-from ptp_symbolic.numeric.runtime.loader import load_module
+from ptp_symbolic.numeric.runtime.model import load_module
 module = load_module(Path(sys.argv[1]), "ptp_model_cube").module
 print(module.cube(3.0), sum(module.cube.stats.cache_hits.values()))
 """

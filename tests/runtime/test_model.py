@@ -129,7 +129,7 @@ def test_a_folder_is_no_platform(tmp_path: Path) -> None:
 
 
 def test_profiles_as_text_are_inputs(ideal: Model) -> None:
-    from ptp_symbolic.numeric.simulation.signals.inputs import sine_sweep, step
+    from ptp_symbolic.numeric.simulation.inputs import sine_sweep, step
 
     texts = {"tau_pan": "step:0.5@0.02", "tau_tilt": "sweep:0.1@1..3"}
     signals = {"tau_pan": step(0.0, 0.5, 0.02), "tau_tilt": sine_sweep(0.1, 1.0, 3.0, 0.0, 0.1)}

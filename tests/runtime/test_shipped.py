@@ -17,8 +17,8 @@ from pathlib import Path
 from ptp_symbolic.numeric.runtime import shipped
 shipped.FOLDER = Path(sys.argv[1])
 import numpy as np
-from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
-from ptp_symbolic.numeric.simulation.signals.inputs import constant, stack
+from ptp_symbolic.numeric.simulation.input_values import evaluate_inputs
+from ptp_symbolic.numeric.simulation.inputs import constant, stack
 given = stack([constant(0.25)])
 u = np.zeros(1)
 evaluate_inputs(0.5, 1, *given.arrays, given.new_cursor(), u)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ptp_symbolic
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, multisine, ramp, step, table
+from ptp_symbolic.numeric.simulation.inputs import InputSignal, multisine, ramp, step, table
 from tests.simulation.block import F_C, F_S, J, K, block
 
 METHODS = ("rosenbrock", "runge_kutta")

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 import ptp_symbolic
 from ptp_symbolic.models import emission
-from ptp_symbolic.numeric.simulation.signals.inputs import constant, multisine, ramp, step
+from ptp_symbolic.numeric.simulation.inputs import constant, multisine, ramp, step
 from ptp_symbolic.platform import read_platform
 from tests.simulation.block import F_C, F_S, J, K, block
 

@@ -10,8 +10,8 @@ import ptp_symbolic
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate
 from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.simulation.inputs import constant, stack, table
 from ptp_symbolic.numeric.simulation.run import SimulationError
-from ptp_symbolic.numeric.simulation.signals.inputs import constant, stack, table
 
 MODEL = ptp_symbolic.load("tilt_drive")
 

@@ -10,6 +10,7 @@ from scipy.linalg import expm
 
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.inputs import InputSignal, constant, ramp, stack, step
 from ptp_symbolic.numeric.simulation.integration import (
     Accuracy,
     Solution,
@@ -18,7 +19,6 @@ from ptp_symbolic.numeric.simulation.integration import (
 )
 from ptp_symbolic.numeric.simulation.kernels.records import DONE, KERNEL
 from ptp_symbolic.numeric.simulation.methods.exponential_step import double, fill_phi_functions
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, constant, ramp, stack, step
 from ptp_symbolic.platform import (
     EffectDeclaration,
     ParameterDeclaration,

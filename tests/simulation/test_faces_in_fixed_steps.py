@@ -5,7 +5,7 @@ import pytest
 
 from ptp_symbolic import simulate
 from ptp_symbolic.models import emission
-from ptp_symbolic.numeric.simulation.signals.inputs import constant
+from ptp_symbolic.numeric.simulation.inputs import constant
 from tests.effects.test_backlash_kinds import (
     DRY,
     FREE,

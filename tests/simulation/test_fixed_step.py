@@ -7,7 +7,7 @@ import pytest
 
 import ptp_symbolic
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.simulation.signals.inputs import constant, multisine, ramp, step, table
+from ptp_symbolic.numeric.simulation.inputs import constant, multisine, ramp, step, table
 from tests.independent.pan_drive import PanDrive
 from tests.independent.pan_drive import simulate as simulate_independently
 from tests.simulation.block import F_C, F_S, J, K, block

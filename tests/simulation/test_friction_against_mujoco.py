@@ -10,7 +10,7 @@ import pytest
 
 from ptp_symbolic import simulate
 from ptp_symbolic.models import emission
-from ptp_symbolic.numeric.simulation.signals.inputs import table
+from ptp_symbolic.numeric.simulation.inputs import table
 from ptp_symbolic.platform import EffectDeclaration, Platform
 
 mujoco = pytest.importorskip("mujoco", reason="MuJoCo is an extra")

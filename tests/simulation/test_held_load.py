@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 from ptp_symbolic import sensitivity, simulate
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import multisine, step, table
+from ptp_symbolic.numeric.simulation.inputs import multisine, step, table
 from tests.effects.test_backlash_kinds import (
     DRIVEN,
     GAP,

@@ -12,13 +12,13 @@ from scipy.linalg import expm
 
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.inputs import stack, table
 from ptp_symbolic.numeric.simulation.integration import (
     Accuracy,
     Solution,
     geared_weights,
     integrate,
 )
-from ptp_symbolic.numeric.simulation.signals.inputs import stack, table
 from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
 
 PLATFORM = Path(__file__).parents[1] / "platforms" / "fieldlog_pan.toml"

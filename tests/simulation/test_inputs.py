@@ -13,8 +13,8 @@ from scipy.interpolate import CubicSpline
 from scipy.signal import chirp
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
-from ptp_symbolic.numeric.simulation.signals.inputs import (
+from ptp_symbolic.numeric.simulation.input_values import evaluate_inputs
+from ptp_symbolic.numeric.simulation.inputs import (
     InputSignal,
     constant,
     cubic_transition,

@@ -30,7 +30,7 @@ def test_every_file_that_a_kernel_imports_counts(checkout: Path) -> None:
     simulation = package / "numeric/simulation"
     counted = {str(p.relative_to(simulation)) for p in sources if simulation in p.parents}
     assert {"hybrid.py", "sampling.py", "events/crossing.py", "kernels/linear.py"} <= counted
-    assert not {"run.py", "integration.py", "feedback.py", "signals/inputs.py"} & counted
+    assert not {"run.py", "integration.py", "feedback.py", "inputs.py"} & counted
 
 
 def test_a_new_file_counts_as_soon_as_a_kernel_imports_it(checkout: Path, tmp_path: Path) -> None:

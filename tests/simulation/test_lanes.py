@@ -11,9 +11,9 @@ from numba import njit, types
 from scipy.integrate import solve_ivp
 
 import ptp_symbolic as ptp
+from ptp_symbolic.numeric.simulation import inputs
 from ptp_symbolic.numeric.simulation.integration import checked_accuracy
 from ptp_symbolic.numeric.simulation.lanes import BatchProblem, integrate_batch
-from ptp_symbolic.numeric.simulation.signals import inputs
 from tests.independent import rigid_platform
 
 PAYLOAD = ptp.load("payload")

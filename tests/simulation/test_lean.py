@@ -14,9 +14,9 @@ import pytest
 
 from ptp_symbolic import simulate
 from ptp_symbolic.models import emission, variants
+from ptp_symbolic.numeric.simulation.inputs import stack, table
 from ptp_symbolic.numeric.simulation.integration import Accuracy, geared_weights, integrate
 from ptp_symbolic.numeric.simulation.kernels import specialised
-from ptp_symbolic.numeric.simulation.signals.inputs import stack, table
 from ptp_symbolic.platform import read_platform
 
 PLATFORM = Path(__file__).parents[1] / "platforms" / "fieldlog_pan.toml"

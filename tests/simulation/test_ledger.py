@@ -10,8 +10,8 @@ from numba import njit
 import ptp_symbolic
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.inputs import constant, multisine, step, table
 from ptp_symbolic.numeric.simulation.run import Trajectory
-from ptp_symbolic.numeric.simulation.signals.inputs import constant, multisine, step, table
 from ptp_symbolic.platform import read_platform
 from tests.simulation.block import block
 

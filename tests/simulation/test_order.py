@@ -22,8 +22,8 @@ from scipy.special import ellipj, ellipk
 import ptp_symbolic
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.inputs import ramp, step
 from ptp_symbolic.numeric.simulation.run import Trajectory
-from ptp_symbolic.numeric.simulation.signals.inputs import ramp, step
 from ptp_symbolic.platform import EffectDeclaration, Platform
 from tests.simulation.block import block
 

@@ -8,11 +8,11 @@ import sympy as sp
 
 from ptp_symbolic import simulate
 from ptp_symbolic.models import emission
-from ptp_symbolic.numeric.simulation.signals.input_values import (
+from ptp_symbolic.numeric.simulation.input_values import (
     evaluate_input_slopes,
     evaluate_inputs,
 )
-from ptp_symbolic.numeric.simulation.signals.inputs import constant, sine_sweep, stack
+from ptp_symbolic.numeric.simulation.inputs import constant, sine_sweep, stack
 from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.documents.statements import Statement, statements

@@ -7,10 +7,10 @@ import pytest
 
 import ptp_symbolic
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.simulation.inputs import constant, multisine, stack, step, table
 from ptp_symbolic.numeric.simulation.integration import Accuracy, default_method, integrate
 from ptp_symbolic.numeric.simulation.kernels.records import DIVERGED
 from ptp_symbolic.numeric.simulation.methods.rosenbrock import COUPLING, GAMMA, STAGES, A, C, D
-from ptp_symbolic.numeric.simulation.signals.inputs import constant, multisine, stack, step, table
 from tests.simulation.block import J, block
 
 

@@ -7,8 +7,8 @@ from scipy.integrate import solve_ivp
 import ptp_symbolic
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.simulation import run
+from ptp_symbolic.numeric.simulation.inputs import multisine, ramp, step
 from ptp_symbolic.numeric.simulation.methods.runge_kutta import ERROR, A, C
-from ptp_symbolic.numeric.simulation.signals.inputs import multisine, ramp, step
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import DOP853
 
 import ptp_symbolic
-from ptp_symbolic.numeric.runtime.loader import load_module
+from ptp_symbolic.numeric.runtime.model import load_module
 
 START = np.array([0.0, 0.5, 1.0, 0.0])
 DRIVEN = {"tau_pan": "multisine:0.3@1", "tau_tilt": "multisine:0.2@0.7"}

@@ -8,9 +8,9 @@ import pytest
 from ptp_symbolic import sensitivity, simulate
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.inputs import constant, step
 from ptp_symbolic.numeric.simulation.integration import PATIENCE
 from ptp_symbolic.numeric.simulation.run import SimulationError
-from ptp_symbolic.numeric.simulation.signals.inputs import constant, step
 from ptp_symbolic.platform import EffectDeclaration, Platform
 
 EFFECTS = (

@@ -47,7 +47,7 @@ from ptp_symbolic.numeric.identify.windows import (
     split_run,
 )
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, sampled_signals, stack
+from ptp_symbolic.numeric.simulation.inputs import InputSignal, sampled_signals, stack
 
 FloatArray = NDArray[np.float64]
 

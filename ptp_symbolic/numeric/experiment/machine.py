@@ -31,8 +31,8 @@ from ptp_symbolic.numeric.identify.least_squares import (
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.inputs import table
 from ptp_symbolic.numeric.simulation.run import SimulationError, simulate, start_of
-from ptp_symbolic.numeric.simulation.signals.inputs import table
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.platform.units import compatible, to_si
 

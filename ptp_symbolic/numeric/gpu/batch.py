@@ -51,6 +51,13 @@ from ptp_symbolic.numeric.gpu.machine import (
     next_stop,
 )
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.inputs import (
+    InputSignal,
+    delayed,
+    delays_of,
+    stack,
+    values_at,
+)
 from ptp_symbolic.numeric.simulation.integration import (
     EXPLICIT,
     checked_accuracy,
@@ -68,13 +75,6 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
 from ptp_symbolic.numeric.simulation.lanes import IMPOSSIBLE, impossible
 from ptp_symbolic.numeric.simulation.methods.runge_kutta import ERROR, ORDER, STAGES, A, C
 from ptp_symbolic.numeric.simulation.run import FIXED_STEP, refuse_failure
-from ptp_symbolic.numeric.simulation.signals.inputs import (
-    InputSignal,
-    delayed,
-    delays_of,
-    stack,
-    values_at,
-)
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

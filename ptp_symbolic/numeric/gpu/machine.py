@@ -6,8 +6,9 @@ as it stands.
 What drives the trajectories: the signals of all kinds of runs in flat arrays, and their values
 in a thread.
 
-The same signals as in `simulation.signals`: piecewise cubics (constants, zero-order holds, linear
-tables), sines and sweeps. A delay belongs to the parameters, so that every thread has its own.
+The same signals as in `simulation.input_values`: piecewise cubics (constants, zero-order holds,
+linear tables), sines and sweeps. A delay belongs to the parameters, so that every thread has its
+own.
 """
 
 import math
@@ -21,9 +22,9 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.inputs import InputSignal, stack
 from ptp_symbolic.numeric.simulation.integration import limited_states
 from ptp_symbolic.numeric.simulation.kernels.records import LARGEST_STATE
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, stack
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

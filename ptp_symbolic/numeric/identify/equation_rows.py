@@ -35,7 +35,7 @@ from ptp_symbolic.numeric.identify.weak_form import (
     windows,
 )
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import delays_of
+from ptp_symbolic.numeric.simulation.inputs import delays_of
 
 BoolArray = NDArray[np.bool_]
 FloatArray = NDArray[np.float64]

@@ -19,6 +19,12 @@ from ptp_symbolic.numeric.identify.evidence import Deferred, refuse_unstored
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.runtime.element_layout import contact_guards
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.inputs import (
+    delay_columns,
+    delayed,
+    delays_of,
+    values_at,
+)
 from ptp_symbolic.numeric.simulation.integration import (
     Accuracy,
     geared_weights,
@@ -31,12 +37,6 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     INTEGERS,
     MATRIX,
     VECTOR,
-)
-from ptp_symbolic.numeric.simulation.signals.inputs import (
-    delay_columns,
-    delayed,
-    delays_of,
-    values_at,
 )
 
 FloatArray = NDArray[np.float64]

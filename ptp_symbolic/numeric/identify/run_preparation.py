@@ -18,7 +18,7 @@ from ptp_symbolic.numeric.identify.evidence import Work
 from ptp_symbolic.numeric.identify.noise import Correlation, neighbour_correlation, white_noise
 from ptp_symbolic.numeric.identify.run import WINDOW, Run, refuse_unseen_angles, with_start
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import stack, table
+from ptp_symbolic.numeric.simulation.inputs import stack, table
 from ptp_symbolic.platform import Platform, SignalDeclaration
 
 FloatArray = NDArray[np.float64]

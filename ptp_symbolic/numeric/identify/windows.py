@@ -44,7 +44,7 @@ from ptp_symbolic.numeric.identify.least_squares import (
 from ptp_symbolic.numeric.identify.noise import white_noise
 from ptp_symbolic.numeric.identify.run import WINDOW, Around, Run, thinned, with_inputs, with_start
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import part_of_sampled
+from ptp_symbolic.numeric.simulation.inputs import part_of_sampled
 
 BoolArray = NDArray[np.bool_]
 FloatArray = NDArray[np.float64]

@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.runtime.element_layout import contact_count, contact_modes
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.integration import Accuracy, Solution, integrate
-from ptp_symbolic.numeric.simulation.kernels.records import DONE
-from ptp_symbolic.numeric.simulation.signals.inputs import (
+from ptp_symbolic.numeric.simulation.inputs import (
     InputTable,
     delays_of,
     values_at,
 )
+from ptp_symbolic.numeric.simulation.integration import Accuracy, Solution, integrate
+from ptp_symbolic.numeric.simulation.kernels.records import DONE
 
 FloatArray = NDArray[np.float64]
 

@@ -29,6 +29,7 @@ from ptp_symbolic.numeric.simulation.events.modes import (
     settle,
     stop_at_bound,
 )
+from ptp_symbolic.numeric.simulation.input_values import evaluate_inputs
 from ptp_symbolic.numeric.simulation.kernels.calls import call, place
 from ptp_symbolic.numeric.simulation.kernels.records import (
     DIVERGED,
@@ -74,7 +75,6 @@ from ptp_symbolic.numeric.simulation.sampling import (
     next_stop,
     sample_now,
 )
-from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
 
 _V, _M, _I = VECTOR, MATRIX, INTEGERS
 _WORK = types.Tuple((_M, _M, _M, _M, _I, _V, _V, _V, types.int64[:, ::1]))

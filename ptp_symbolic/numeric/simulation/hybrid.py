@@ -31,6 +31,7 @@ from ptp_symbolic.numeric.simulation.events.modes import (
     is_outside,
     locate_event,
 )
+from ptp_symbolic.numeric.simulation.input_values import evaluate_inputs
 from ptp_symbolic.numeric.simulation.kernels.calls import place
 from ptp_symbolic.numeric.simulation.kernels.records import (
     CHATTERING,
@@ -91,7 +92,6 @@ from ptp_symbolic.numeric.simulation.sampling import (
     reach_samples_at,
     sample_at,
 )
-from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
 
 
 @inlined

@@ -17,6 +17,7 @@ from ptp_symbolic.numeric.runtime.element_layout import contact_count, contact_g
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation import hybrid, smooth_runner
 from ptp_symbolic.numeric.simulation.events.impacts import STICKS
+from ptp_symbolic.numeric.simulation.inputs import InputTable
 from ptp_symbolic.numeric.simulation.kernels.calls import addresses, smooth_addresses
 from ptp_symbolic.numeric.simulation.kernels.linear import padded
 from ptp_symbolic.numeric.simulation.kernels.records import (
@@ -35,7 +36,6 @@ from ptp_symbolic.numeric.simulation.methods.exponential_step import new_propaga
 from ptp_symbolic.numeric.simulation.methods.rosenbrock import STAGES
 from ptp_symbolic.numeric.simulation.methods.steps import ROSENBROCK, RUNGE_KUTTA
 from ptp_symbolic.numeric.simulation.sampling import loop_address, new_sampling
-from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
 from ptp_symbolic.numeric.simulation.smooth_runner import LANES, REACHED, ROWS, START, TRIED
 
 FloatArray = NDArray[np.float64]

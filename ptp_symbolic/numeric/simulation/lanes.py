@@ -26,6 +26,14 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError, out_of_bounds
 from ptp_symbolic.numeric.runtime.model import BOUND_SLACK, Model
+from ptp_symbolic.numeric.simulation.inputs import (
+    InputSignal,
+    InputTable,
+    delayed,
+    delays_of,
+    stack,
+    values_at,
+)
 from ptp_symbolic.numeric.simulation.integration import (
     EXPLICIT,
     Accuracy,
@@ -47,14 +55,6 @@ from ptp_symbolic.numeric.simulation.lane_runner import (
 )
 from ptp_symbolic.numeric.simulation.methods import dormand_prince
 from ptp_symbolic.numeric.simulation.run import refuse_failure
-from ptp_symbolic.numeric.simulation.signals.inputs import (
-    InputSignal,
-    InputTable,
-    delayed,
-    delays_of,
-    stack,
-    values_at,
-)
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

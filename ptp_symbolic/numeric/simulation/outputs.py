@@ -4,6 +4,7 @@ import numpy as np
 
 from ptp_symbolic.numeric.runtime.element_layout import contact_count, contact_modes
 from ptp_symbolic.numeric.simulation.events.impacts import PRESSED
+from ptp_symbolic.numeric.simulation.input_values import evaluate_inputs
 from ptp_symbolic.numeric.simulation.kernels.calls import call
 from ptp_symbolic.numeric.simulation.kernels.records import (
     EVENTS,
@@ -16,7 +17,6 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     kernel,
 )
 from ptp_symbolic.numeric.simulation.methods.steps import curve
-from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
 
 OF_STEP, OF_RUN, INSIDE, ROUNDING = 10.0, 0.01, 20.0, 1e-14
 SHORTEST_FOR_LEDGER, MOST_UNBALANCED = 1e-9, 100  # s

@@ -20,6 +20,16 @@ from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation import fixed_runner
 from ptp_symbolic.numeric.simulation.feedback import Commands, Feedback, integrate_with_feedback
+from ptp_symbolic.numeric.simulation.input_values import evaluate_inputs
+from ptp_symbolic.numeric.simulation.inputs import (
+    InputSignal,
+    InputTable,
+    as_signals,
+    constant,
+    delayed,
+    delays_of,
+    stack,
+)
 from ptp_symbolic.numeric.simulation.integration import (
     METHODS,
     MOST_STEPS,
@@ -51,16 +61,6 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
 )
 from ptp_symbolic.numeric.simulation.methods.implicit_step import StepWork
 from ptp_symbolic.numeric.simulation.sampling import new_sampling
-from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
-from ptp_symbolic.numeric.simulation.signals.inputs import (
-    InputSignal,
-    InputTable,
-    as_signals,
-    constant,
-    delayed,
-    delays_of,
-    stack,
-)
 
 FloatArray = NDArray[np.float64]
 

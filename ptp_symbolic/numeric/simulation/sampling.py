@@ -25,6 +25,10 @@ from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.ahead import HELD_SAMPLES, made_once
 from ptp_symbolic.numeric.simulation.events.impacts import derivative
 from ptp_symbolic.numeric.simulation.events.modes import fill_violations
+from ptp_symbolic.numeric.simulation.input_values import (
+    evaluate_input_slopes,
+    evaluate_inputs,
+)
 from ptp_symbolic.numeric.simulation.kernels.calls import call, placed, sampler_addresses
 from ptp_symbolic.numeric.simulation.kernels.records import (
     EQUATIONS_TYPE,
@@ -56,10 +60,6 @@ from ptp_symbolic.numeric.simulation.methods.exponential_step import (
     reach_sample,
 )
 from ptp_symbolic.numeric.simulation.outputs import write_here
-from ptp_symbolic.numeric.simulation.signals.input_values import (
-    evaluate_input_slopes,
-    evaluate_inputs,
-)
 
 FloatArray = NDArray[np.float64]
 

@@ -14,6 +14,7 @@ import numpy as np
 from numba import njit, types
 
 from ptp_symbolic.numeric.simulation.ahead import SMOOTH_RUNNER, made_once
+from ptp_symbolic.numeric.simulation.input_values import evaluate_inputs
 from ptp_symbolic.numeric.simulation.kernels.calls import call
 from ptp_symbolic.numeric.simulation.kernels.records import (
     DIVERGED,
@@ -44,7 +45,6 @@ from ptp_symbolic.numeric.simulation.methods.dormand_prince import (
     A,
     C,
 )
-from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
 
 # Rows of the work: slopes of the stages, interpolant, state at both ends, argument of a stage,
 # and slope of the interpolant.

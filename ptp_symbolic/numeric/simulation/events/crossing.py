@@ -17,6 +17,7 @@ from ptp_symbolic.numeric.simulation.events.modes import (
     violation,
     violation_gradient,
 )
+from ptp_symbolic.numeric.simulation.input_values import evaluate_inputs
 from ptp_symbolic.numeric.simulation.kernels.calls import call
 from ptp_symbolic.numeric.simulation.kernels.records import (
     CHATTERING,
@@ -30,7 +31,6 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     merged,
 )
 from ptp_symbolic.numeric.simulation.outputs import note_strikes, note_switches
-from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
 
 GRAZING = 1e-9  # a guard that is only touched has no event time to differentiate
 AHEAD = 1e-7  # s

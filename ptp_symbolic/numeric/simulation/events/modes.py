@@ -24,6 +24,7 @@ from ptp_symbolic.numeric.simulation.events.impacts import (
     rest_together,
     strike_faces,
 )
+from ptp_symbolic.numeric.simulation.input_values import evaluate_inputs
 from ptp_symbolic.numeric.simulation.kernels.records import (
     TIME,
     TIME_RESOLUTION,
@@ -32,7 +33,6 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     merged,
 )
 from ptp_symbolic.numeric.simulation.methods.steps import attempt, curve, fill_dense
-from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
 
 REVERSAL_DEAD_BAND = 1e-13
 PUSH_DEAD_BAND = 1e-12  # N m, or N; a face at rest without load would let go and push by rounding

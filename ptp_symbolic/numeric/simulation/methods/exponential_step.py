@@ -54,6 +54,7 @@ from ptp_symbolic.numeric.simulation.events.modes import (
     is_finite,
     summit,
 )
+from ptp_symbolic.numeric.simulation.input_values import TIME_DIFFERENCE, fill_drive
 from ptp_symbolic.numeric.simulation.kernels.linear import (
     LANES,
     add_product,
@@ -86,7 +87,6 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
 )
 from ptp_symbolic.numeric.simulation.methods.steps import larger, over_tolerance
 from ptp_symbolic.numeric.simulation.outputs import next_output
-from ptp_symbolic.numeric.simulation.signals.input_values import TIME_DIFFERENCE, fill_drive
 
 HIGHEST_POWER, LARGEST_NORM, MOST_DOUBLINGS = 15, 0.5, 60
 

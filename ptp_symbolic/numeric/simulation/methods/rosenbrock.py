@@ -11,6 +11,12 @@ L-stable and stiffly accurate: the last stage is the error estimate.
 import numpy as np
 
 from ptp_symbolic.numeric.simulation.events.impacts import derivative, hold_at_rest, jacobian
+from ptp_symbolic.numeric.simulation.input_values import (
+    TIME_DIFFERENCE,
+    evaluate_input_slopes,
+    evaluate_inputs,
+    fill_drive,
+)
 from ptp_symbolic.numeric.simulation.kernels.linear import (
     LANES,
     add_product,
@@ -26,12 +32,6 @@ from ptp_symbolic.numeric.simulation.kernels.linear import (
     weighted,
 )
 from ptp_symbolic.numeric.simulation.kernels.records import copy, copy_matrix, inlined, kernel
-from ptp_symbolic.numeric.simulation.signals.input_values import (
-    TIME_DIFFERENCE,
-    evaluate_input_slopes,
-    evaluate_inputs,
-    fill_drive,
-)
 
 STAGES = 8
 GAMMA = 0.21193756319429014

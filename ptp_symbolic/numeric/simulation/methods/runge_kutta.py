@@ -9,6 +9,11 @@ assumption, Computers and Mathematics with Applications 62 (2011) 770-775, Table
 import numpy as np
 
 from ptp_symbolic.numeric.simulation.events.impacts import derivative, jacobian
+from ptp_symbolic.numeric.simulation.input_values import (
+    evaluate_input_slopes,
+    evaluate_inputs,
+    fill_drive,
+)
 from ptp_symbolic.numeric.simulation.kernels.linear import (
     LANES,
     add_sparse_product,
@@ -19,11 +24,6 @@ from ptp_symbolic.numeric.simulation.kernels.linear import (
     weighted,
 )
 from ptp_symbolic.numeric.simulation.kernels.records import copy, inlined, kernel
-from ptp_symbolic.numeric.simulation.signals.input_values import (
-    evaluate_input_slopes,
-    evaluate_inputs,
-    fill_drive,
-)
 
 STAGES = 7
 ORDER = 5

@@ -7,9 +7,9 @@ such runs do not call is not compiled for them.
 import math
 
 from ptp_symbolic.numeric.simulation.events.impacts import derivative
+from ptp_symbolic.numeric.simulation.input_values import evaluate_inputs
 from ptp_symbolic.numeric.simulation.kernels.records import copy, flush, inlined, kernel
 from ptp_symbolic.numeric.simulation.methods import rosenbrock, runge_kutta
-from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
 
 RUNGE_KUTTA, ROSENBROCK = 0, 1
 

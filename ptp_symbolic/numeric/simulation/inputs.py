@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ptp_symbolic.errors import InputError, unknown, wrong_type
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.input_values import (
+from ptp_symbolic.numeric.simulation.input_values import (
     evaluate_input_slopes,
     evaluate_inputs,
 )
@@ -444,7 +444,7 @@ def as_signals(
                 f"Input '{name}'",
                 signal,
                 "a profile such as 'constant:3', or a signal of"
-                " ptp_symbolic.numeric.simulation.signals.inputs",
+                " ptp_symbolic.numeric.simulation.inputs",
             )
         signals[name] = signal
     return signals

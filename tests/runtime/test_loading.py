@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.runtime.loader import TRAILER, load_module
+from ptp_symbolic.numeric.runtime.model import TRAILER, load_module
 
 
 def sealed(text: str) -> str:

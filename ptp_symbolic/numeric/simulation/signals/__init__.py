@@ -1,1 +1,0 @@
-"""Inputs: profiles, columns of logs, delays."""
