@@ -12,9 +12,9 @@ from typing import Any
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.black_box import FreeRuns, black_box, require_library
 from ptp_symbolic.numeric.data import Log, log_files, read_split_logs
+from ptp_symbolic.numeric.diagnose.fitted_model import SearchProblem, tolerance_for
 from ptp_symbolic.numeric.diagnose.preparation import inverted_inputs
 from ptp_symbolic.numeric.diagnose.stepwise import Search
-from ptp_symbolic.numeric.diagnose.trial import Task, tolerance_for
 from ptp_symbolic.numeric.diagnose.verdict import Verdict
 from ptp_symbolic.numeric.identify.constants import ROUGH
 from ptp_symbolic.numeric.identify.evidence import Allowance, recording
@@ -42,7 +42,11 @@ NO_ROWS = "The equations of this machine have no residual torque along its measu
 
 
 def against_black_box(
-    platform: Platform, task: Task, found: Search, verdict: Verdict, validate: Sequence[Log]
+    platform: Platform,
+    problem: SearchProblem,
+    found: Search,
+    verdict: Verdict,
+    validate: Sequence[Log],
 ) -> dict[str, Any]:
     """The comparison as plain data, judged on the whole `validate` logs; no axes where the machine
     has no equation space.
@@ -50,20 +54,20 @@ def against_black_box(
     space = found.proposals.space
     if space is None:
         return {"about": NO_ROWS, "half_width": None, "axes": {}, "free": {}}
-    task.progress("training models that know no physics")
+    problem.progress("training models that know no physics")
     added = verdict.final.candidates
     free = FreeRuns(
-        task.model,
+        problem.model,
         verdict.before.runs,
-        task.model.parameter_vector(verdict.declared.values),
+        problem.model.parameter_vector(verdict.declared.values),
         (verdict.before.z, verdict.after.z),
-        tolerance_for(task, ROUGH),
+        tolerance_for(problem, ROUGH),
     )
     names = {f.name for c in added for f in c.free}
     compared = black_box(
         space,
-        task.whole,
-        prepare_runs(task.model, platform, tuple(validate)),
+        problem.whole,
+        prepare_runs(problem.model, platform, tuple(validate)),
         verdict.declared.values,
         verdict.final.values if added else None,
         f"{len(names)} parameter{'s' if len(names) != 1 else ''}",
@@ -127,11 +131,11 @@ def diagnose_platform(
         if choice.is_cut_short:
             noted = (_cut_short(allowance, effort), *noted)
         if chosen.verdict.leaves_more:
-            noted = (*noted, *inverted_inputs(chosen.found.task, chosen.found.declared))
+            noted = (*noted, *inverted_inputs(chosen.found.problem, chosen.found.declared))
         beside = None
         if rivals:
             beside = against_black_box(
-                chosen.platform, chosen.task, chosen.found, chosen.verdict, validate_logs
+                chosen.platform, chosen.problem, chosen.found, chosen.verdict, validate_logs
             )
         found = written_up(platform, choice, noted, sources, beside)
     files = {FILE: keeper.content(), **found.files}  # the one named last is written last

@@ -12,10 +12,10 @@ from ptp_symbolic.models import variants
 from ptp_symbolic.models.declared import free_parameters, known_values, refuse_unknown_signals
 from ptp_symbolic.numeric.data import read_logs
 from ptp_symbolic.numeric.diagnose.candidates import Candidate, find_candidates, vanished
-from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise
+from ptp_symbolic.numeric.diagnose.fitted_model import SearchProblem, fitted, halving, restarted
+from ptp_symbolic.numeric.diagnose.noise_floor import propagated_input_noise
 from ptp_symbolic.numeric.diagnose.proposals import ProposedSets, placed_by_rows, propose
 from ptp_symbolic.numeric.diagnose.refits import fit_declared, from_rows, polished
-from ptp_symbolic.numeric.diagnose.trial import Task, fitted, halving, restarted
 from ptp_symbolic.numeric.experiment.machine import Contender, from_fit, without_logs
 from ptp_symbolic.numeric.identify.constants import ROUNDING
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
@@ -23,7 +23,7 @@ from ptp_symbolic.numeric.identify.least_squares import all_values_at_start
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform
-from ptp_symbolic.workflows.preparation import effect_keys, look_at, model_of, task_for
+from ptp_symbolic.workflows.preparation import effect_keys, look_at, model_of, problem_for
 from ptp_symbolic.workflows.result import Progress
 
 USUAL_PERIOD = 5e-3  # s; between samples where no log says another
@@ -46,7 +46,7 @@ class Rivals:
 
 @dataclass(frozen=True, eq=False)
 class _Known:
-    """What is declared, and the logs so far as a task, with what their motion proposes (None: no
+    """What is declared, and the logs so far as a problem, with what their motion proposes (None: no
     logs).
     """
 
@@ -54,7 +54,7 @@ class _Known:
     free: tuple[FreeParameter, ...]
     values: Mapping[str, float]
     candidates: tuple[Candidate, ...]
-    task: Task | None
+    problem: SearchProblem | None
     proposals: ProposedSets | None
 
 
@@ -83,13 +83,13 @@ def rivals_of(
     model = model_of(variants.with_candidates(platform) if between else platform)
     declared = effect_keys(platform) if between else ()
     noted: tuple[str, ...] = ()
-    task = None
+    problem = None
     if logs:
         read = read_logs(logs, platform)
         noted = look_at(platform, read, read, progress)
-        task = task_for(platform, model, read, read, declared, executor, progress)
-    here = _declared(platform, model, declared, task)
-    task = here.task
+        problem = problem_for(platform, model, read, read, declared, executor, progress)
+    here = _declared(platform, model, declared, problem)
+    problem = here.problem
     for name in parameters:
         if name not in {f.name for f in here.free}:
             raise unknown("free parameter", name, [f.name for f in here.free])
@@ -98,10 +98,10 @@ def rivals_of(
     for label, effects in zip(between or (platform.name,), sets, strict=True):
         progress(f"fitting {label} to the logs" if logs else f"taking {label} as it is declared")
         contenders.append(_contender(here, label, effects, known, executor))
-    noted += tuple(_remark(c, task) for c in contenders if task and _is_off(c, task))
-    if task is None:
+    noted += tuple(_remark(c, problem) for c in contenders if problem and _is_off(c, problem))
+    if problem is None:
         noted += tuple(_assumed(c, e, known) for c, e in zip(contenders, sets, strict=True) if e)
-    runs = () if task is None else task.whole
+    runs = () if problem is None else problem.whole
     return Rivals(
         tuple(contenders),
         _with_noise(platform, runs),
@@ -112,13 +112,13 @@ def rivals_of(
 
 
 def _declared(
-    platform: Platform, model: Model, declared: Sequence[str], task: Task | None
+    platform: Platform, model: Model, declared: Sequence[str], problem: SearchProblem | None
 ) -> _Known:
-    if task is not None:
-        proposals = propose(task)
-        task = replace(task, candidates=placed_by_rows(task.candidates, proposals))
-        task, trial = fit_declared(task, proposals)
-        return _Known(model, task.free, trial.values, task.candidates, task, proposals)
+    if problem is not None:
+        proposals = propose(problem)
+        problem = replace(problem, candidates=placed_by_rows(problem.candidates, proposals))
+        problem, trial = fit_declared(problem, proposals)
+        return _Known(model, problem.free, trial.values, problem.candidates, problem, proposals)
     refuse_unknown_signals(platform, model)
     free, known = free_parameters(platform, model), known_values(platform, model)
     off = vanished(model, declared) if declared else {}
@@ -158,13 +158,13 @@ def _contender(
     for f in free:
         if f.name in known:
             values.update(dict.fromkeys(f.names, known[f.name]))
-    if here.task is None or here.proposals is None:
+    if here.problem is None or here.proposals is None:
         return without_logs(label, here.model, [restarted(f, values[f.name]) for f in free], values)
-    begun = fitted(here.task, effects, values, None, executor=executor)
-    rows = from_rows(here.task, here.proposals, effects, values) if effects else []
-    (trial,) = halving(here.task, [begun, *rows], 1) or [begun]
+    begun = fitted(here.problem, effects, values, None, executor=executor)
+    rows = from_rows(here.problem, here.proposals, effects, values) if effects else []
+    (trial,) = halving(here.problem, [begun, *rows], 1) or [begun]
     if trial.fit.failed is None:
-        trial = polished(here.task, trial, carried_noise(here.task, trial.fit))
+        trial = polished(here.problem, trial, propagated_input_noise(here.problem, trial.fit))
     if trial.fit.failed is not None:
         raise InputError(
             f"The model {label} does not simulate the logs ({trial.fit.failed}); change its start"
@@ -186,12 +186,12 @@ def _assumed(contender: Contender, effects: Sequence[Candidate], known: Mapping[
     return f"{contender.name} is taken with {amounts}, {from_where}; logs would add information."
 
 
-def _is_off(contender: Contender, task: Task) -> bool:
-    return contender.left > WELL_FITTED**2 * sum(run.size for run in task.whole)
+def _is_off(contender: Contender, problem: SearchProblem) -> bool:
+    return contender.left > WELL_FITTED**2 * sum(run.size for run in problem.whole)
 
 
-def _remark(contender: Contender, task: Task) -> str:
-    times = np.sqrt(contender.left / sum(run.size for run in task.whole))
+def _remark(contender: Contender, problem: SearchProblem) -> str:
+    times = np.sqrt(contender.left / sum(run.size for run in problem.whole))
     return (
         f"{contender.name} leaves {times:.3g} times the noise on the logs so far; what is predicted"
         " for it holds for a model that fits: run fit or diagnose first."

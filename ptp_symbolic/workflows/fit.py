@@ -7,18 +7,18 @@ from typing import Any
 
 from ptp_symbolic.models import variants
 from ptp_symbolic.numeric.data import log_files, read_logs
-from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise, noise_floor_of
+from ptp_symbolic.numeric.diagnose.fitted_model import FittedModel, SearchProblem, tolerance_for
+from ptp_symbolic.numeric.diagnose.noise_floor import noise_floor_of, propagated_input_noise
 from ptp_symbolic.numeric.diagnose.preparation import inverted_inputs
 from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.refits import fit_declared
 from ptp_symbolic.numeric.diagnose.summary import curves_of, error_of, fit_table
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial, tolerance_for
 from ptp_symbolic.numeric.identify.fit import fit_parameters
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.numeric.identify.least_squares import Effort, all_values_at_start
 from ptp_symbolic.numeric.identify.windows import estimable
 from ptp_symbolic.platform import Platform, platform_text
-from ptp_symbolic.workflows.preparation import look_at, model_of, task_for, workers
+from ptp_symbolic.workflows.preparation import look_at, model_of, problem_for, workers
 from ptp_symbolic.workflows.provenance import provenance
 from ptp_symbolic.workflows.result import (
     SCHEMA_VERSION,
@@ -52,16 +52,16 @@ def fit_platform(
     noted = look_at(platform, logs, logs, progress)
     model = model_of(platform)
     with workers() as executor:
-        task = task_for(platform, model, logs, logs, (), executor, progress)
+        problem = problem_for(platform, model, logs, logs, (), executor, progress)
         progress("fitting")
         trial = None
-        if task.free:
-            task, trial = fit_declared(task, propose(task))
-            noted = (*noted, *inverted_inputs(task, trial))
-            trial = replace(trial, fit=estimable(trial.fit, task.input_noise, executor))
-        begun = _as_declared(task)  # over the windows of the fit, as what comes after
+        if problem.free:
+            problem, trial = fit_declared(problem, propose(problem))
+            noted = (*noted, *inverted_inputs(problem, trial))
+            trial = replace(trial, fit=estimable(trial.fit, problem.input_noise, executor))
+        begun = _as_declared(problem)  # over the windows of the fit, as what comes after
         trial = trial or begun
-        floor = noise_floor_of(task, trial, carried_noise(task, trial.fit))
+        floor = noise_floor_of(problem, trial, propagated_input_noise(problem, trial.fit))
     units = model.units
     after = error_of(trial.fit, units)
     error = {
@@ -104,10 +104,10 @@ def _what_to_check(error: Mapping[str, Any]) -> tuple[str, ...]:
     )
 
 
-def _as_declared(task: Task) -> Trial:
+def _as_declared(problem: SearchProblem) -> FittedModel:
     """The declared start values, with nothing but the starts of the runs fitted."""
-    values = {**task.fixed, **all_values_at_start(task.free)}
-    effort = Effort(START_ITERATIONS, 1e-3, tolerance_for(task, START_SHARE))
-    return Trial(
-        (), fit_parameters(task.model, task.train, (), values, None, effort, task.executor)
+    values = {**problem.fixed, **all_values_at_start(problem.free)}
+    effort = Effort(START_ITERATIONS, 1e-3, tolerance_for(problem, START_SHARE))
+    return FittedModel(
+        (), fit_parameters(problem.model, problem.train, (), values, None, effort, problem.executor)
     )

@@ -9,9 +9,9 @@ from typing import Any
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.models.declared import refuse_unknown_signals
 from ptp_symbolic.numeric.data import read_logs
+from ptp_symbolic.numeric.diagnose.fitted_model import fitted
 from ptp_symbolic.numeric.diagnose.preparation import Visible, visible_amounts
 from ptp_symbolic.numeric.diagnose.summary import repeatability_table
-from ptp_symbolic.numeric.diagnose.trial import fitted
 from ptp_symbolic.numeric.identify.least_squares import all_values_at_start
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_preparation import LogFacts, facts_of
@@ -28,7 +28,7 @@ from ptp_symbolic.symbolic.derivation.placement import (
     resolved_parameters,
     undeclared_parameters,
 )
-from ptp_symbolic.workflows.preparation import effect_keys, look_at, model_of, task_for, workers
+from ptp_symbolic.workflows.preparation import effect_keys, look_at, model_of, problem_for, workers
 from ptp_symbolic.workflows.result import SCHEMA_VERSION, Output, Progress, json_text
 
 
@@ -45,24 +45,26 @@ def check_logs(
     progress("deriving the equations of the platform and its candidates")
     model = model_of(variants.with_candidates(platform))
     with workers() as executor:
-        task = task_for(platform, model, logs, logs, effect_keys(platform), executor, progress)
+        problem = problem_for(
+            platform, model, logs, logs, effect_keys(platform), executor, progress
+        )
         progress("simulating the logs at the declared start values")
-        start = fitted(task, (), {**task.fixed, **all_values_at_start(task.free)}, None)
+        start = fitted(problem, (), {**problem.fixed, **all_values_at_start(problem.free)}, None)
         failed = start.fit.failed is not None
-        visible = [] if failed else visible_amounts(task, start)
-    units = {n: model.units[n] for n in (*model.input_names, *task.whole[0].signals)}
-    found = [facts_of(run, units) for run in task.whole]
+        visible = [] if failed else visible_amounts(problem, start)
+    units = {n: model.units[n] for n in (*model.input_names, *problem.whole[0].signals)}
+    found = [facts_of(run, units) for run in problem.whole]
     summary = {
         "schema_version": SCHEMA_VERSION,
         "platform": {"name": platform.name, "title": platform.title},
         "remarks": list(noted),
         "logs": [facts.as_dict() for facts in found],
         "units": units,
-        "repeatability": repeatability_table(task.whole, model.units),
+        "repeatability": repeatability_table(problem.whole, model.units),
         "simulates": not failed,
         "visible": [_row(v, model, start.values) for v in visible],
     }
-    pairs = zip(task.whole, found, strict=True)
+    pairs = zip(problem.whole, found, strict=True)
     curves = {run.name: (run.time, _shown(run, facts, units)) for run, facts in pairs}
     page = render_log_check(summary, curves)
     return Output(summary, {"check.html": page, "check.json": json_text(summary)})

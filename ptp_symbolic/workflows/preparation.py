@@ -9,8 +9,8 @@ from threadpoolctl import threadpool_limits
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.models.declared import free_parameters, known_values, refuse_unknown_signals
 from ptp_symbolic.numeric.data import Log, refuse_motionless, refuse_wrapped_angles, remarks
-from ptp_symbolic.numeric.diagnose.preparation import task_of
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial, usable_cores
+from ptp_symbolic.numeric.diagnose.fitted_model import FittedModel, SearchProblem, usable_cores
+from ptp_symbolic.numeric.diagnose.preparation import problem_of
 from ptp_symbolic.numeric.identify.ahead import FIT, begin_fit
 from ptp_symbolic.numeric.identify.constants import MATERIAL
 from ptp_symbolic.numeric.identify.evidence import Allowance, InTurn, Threads, simulates
@@ -77,7 +77,7 @@ def look_at(
     return noted
 
 
-def task_for(
+def problem_for(
     platform: Platform,
     model: Model,
     train: Iterable[Log],
@@ -86,7 +86,7 @@ def task_for(
     executor: Executor,
     progress: Progress,
     allowance: Allowance | None = None,
-) -> Task:
+) -> SearchProblem:
     """All that stays the same; `declared` are the keys of the effects that are not candidates, and
     `allowance` is what the search may take (None: no limit).
     """
@@ -100,7 +100,7 @@ def task_for(
         ]
     free, known = free_parameters(platform, model), known_values(platform, model)
     noises = {s.signal: s.noise for s in platform.signals}
-    return task_of(
+    return problem_of(
         model,
         runs[0],
         runs[1],
@@ -116,7 +116,7 @@ def task_for(
     )
 
 
-def with_effects(platform: Platform, after: Trial) -> Platform:
+def with_effects(platform: Platform, after: FittedModel) -> Platform:
     """`platform` with the accepted effects, and every fitted value as the new start."""
     bounds = {p.name: p for p in after.fit.model.parameters}
     have = {(e.effect, e.axis) for e in platform.effects}

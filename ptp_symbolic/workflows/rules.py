@@ -86,7 +86,7 @@ def _left_as_fitted(after: Fit, *others: Any) -> Any:
     return mean_squares(after.evaluations, after.runs)
 
 
-def _white(task: Any, fit: Fit, carried: Any) -> Any:
+def _white(problem: Any, fit: Fit, propagated: Any) -> Any:
     """A noise floor of white noise."""
     return (np.ones(len(fit.runs[0].signals)),) * 2
 

@@ -10,6 +10,7 @@ from typing import Any
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import variants
 from ptp_symbolic.models.structures import Rebuilt, pairs, structures
+from ptp_symbolic.numeric.diagnose.fitted_model import SearchProblem, deviances, ranked
 from ptp_symbolic.numeric.diagnose.gain import (
     Gain,
     gain,
@@ -31,7 +32,6 @@ from ptp_symbolic.numeric.diagnose.structures import (
     why_rejected,
 )
 from ptp_symbolic.numeric.diagnose.summary import ranking_row
-from ptp_symbolic.numeric.diagnose.trial import Task, deviances, ranked
 from ptp_symbolic.numeric.diagnose.verdict import (
     PARTLY,
     UNEXPLAINED,
@@ -43,7 +43,7 @@ from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.numeric.identify.windows import parted_like
 from ptp_symbolic.platform import Platform
-from ptp_symbolic.workflows.preparation import effect_keys, model_of, task_for, with_effects
+from ptp_symbolic.workflows.preparation import effect_keys, model_of, problem_for, with_effects
 from ptp_symbolic.workflows.structure_fits import FOLLOWED, Fitted, Logs, fit_structures
 
 LEAST_SHARE = 0.1  # of the allowance, for the brief search beside a structure that fits well
@@ -57,7 +57,7 @@ class Outcome:
 
     platform: Platform
     structure: FittedStructure | None
-    task: Task
+    problem: SearchProblem
     found: Search
     verdict: Verdict
 
@@ -75,20 +75,22 @@ class Searched:
 
     platform: Platform
     structure: FittedStructure | None
-    task: Task
+    problem: SearchProblem
     found: Search
 
     @property
     def is_noise_alone(self) -> bool:
         """Whether the chosen set leaves noise alone."""
         trial = self.found.chosen
-        return leaves_noise_alone(trial, noise_floor_of(self.found.task, trial, self.found.carried))
+        return leaves_noise_alone(
+            trial, noise_floor_of(self.found.problem, trial, self.found.propagated)
+        )
 
     @cached_property
     def outcome(self) -> Outcome:
         """What it ends with."""
         verdict = decide(self.found)
-        return Outcome(self.platform, self.structure, self.task, self.found, verdict)
+        return Outcome(self.platform, self.structure, self.problem, self.found, verdict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,7 +165,7 @@ def _over_windows(platform: Platform, fitted: Fitted, terms: Searched, logs: Log
     not among them: it makes up for the lag that a structure would explain.
     """
     trial = terms.found.chosen
-    declared = on_runs_of(terms.found.task, terms.found.declared, trial.fit.runs)
+    declared = on_runs_of(terms.found.problem, terms.found.declared, trial.fit.runs)
     late = {trial.fit.model.parameter_names[k] for k in trial.fit.model.input_delays if k >= 0}
     kept = tuple(c for c in trial.candidates if not late & set(c.parameters))
     if all(c.is_declared_value for c in kept) or not gain(trial, declared).is_most:
@@ -225,7 +227,7 @@ def _at_length(
 def _best_fit(searches: Sequence[Searched]) -> Searched:
     """The search that ends with the best fit, in the windows of the first one."""
     pattern = searches[0].found.chosen.fit.runs
-    trials = [on_runs_of(s.found.task, s.found.chosen, pattern) for s in searches]
+    trials = [on_runs_of(s.found.problem, s.found.chosen, pattern) for s in searches]
     cost = deviances(trials)
     return searches[min(range(len(cost)), key=lambda k: cost[k])]
 
@@ -233,7 +235,7 @@ def _best_fit(searches: Sequence[Searched]) -> Searched:
 def _is_far_ahead(one: Searched, other: Searched) -> bool:
     """Whether the first surely halves the squared error of the second."""
     trial = one.found.chosen
-    return gain(trial, on_runs_of(other.found.task, other.found.chosen, trial.fit.runs)).is_most
+    return gain(trial, on_runs_of(other.found.problem, other.found.chosen, trial.fit.runs)).is_most
 
 
 def _searched(
@@ -253,7 +255,7 @@ def _searched(
     except InputError as error:  # a candidate that cannot be beside the structure
         logs.progress(f"no terms are searched for: {error}")
         model = model_of(begun)
-    task = task_for(
+    problem = problem_for(
         begun,
         model,
         logs.train,
@@ -264,15 +266,18 @@ def _searched(
         logs.allowance.rest(LEAST_SHARE),
     )
     declared_starts = {p.name: p.value for p in platform.parameters}
-    task = replace(
-        task, free=tuple(replace(f, declared_start=declared_starts[f.name]) for f in task.free)
+    problem = replace(
+        problem,
+        free=tuple(replace(f, declared_start=declared_starts[f.name]) for f in problem.free),
     )
-    return Searched(platform, structure, task, search(task, brief=brief))
+    return Searched(platform, structure, problem, search(problem, brief=brief))
 
 
 def _is_enough(structure: FittedStructure, platform: Platform) -> bool:
     """Whether a structure leaves noise alone with no effect beside those of its `platform`."""
-    return structure.is_noise_alone and len(structure.task.model.effects) == len(platform.effects)
+    return structure.is_noise_alone and len(structure.problem.model.effects) == len(
+        platform.effects
+    )
 
 
 def _chosen(
@@ -286,12 +291,12 @@ def _chosen(
         structure = outcome.structure
         assert structure is not None
         final = outcome.verdict.final
-        without = on_runs_of(terms.found.task, terms.verdict.final, final.fit.runs)
+        without = on_runs_of(terms.found.problem, terms.verdict.final, final.fit.runs)
         quiet = outcome.verdict.word not in (PARTLY, UNEXPLAINED)
-        task = outcome.found.task
-        earned, why = why_rejected(structure, task, final, without, quiet, len(others))
-        unconfirmed = on_runs_of(terms.found.task, terms.found.chosen, final.fit.runs)
-        if why is None and is_materially_better(gain(unconfirmed, final), 1, task.material):
+        problem = outcome.found.problem
+        earned, why = why_rejected(structure, problem, final, without, quiet, len(others))
+        unconfirmed = on_runs_of(terms.found.problem, terms.found.chosen, final.fit.runs)
+        if why is None and is_materially_better(gain(unconfirmed, final), 1, problem.material):
             why = f"{' + '.join(terms.found.chosen.keys)} predicts better, but is not confirmed"
         if why is None:
             named = _with_structure(outcome, terms, earned, others, logs)
@@ -301,7 +306,7 @@ def _chosen(
             why = "reduces the error of the validation runs too little, or not significantly"
         if quiet and terms.verdict.final.candidates:
             against = gain(without, final)
-            if not is_materially_better(against, 1, structure.task.material):
+            if not is_materially_better(against, 1, structure.problem.material):
                 candidates = (*structure.added, *final.candidates)
                 as_good.append(Alternative(replace(final, candidates=candidates), against))
         refused[structure] = why
@@ -344,7 +349,7 @@ def _with_structure(
     merged = {**verdict.confusable, **group}
     quiet = verdict.word not in (PARTLY, UNEXPLAINED)
     before = _declared_validation(terms, verdict.after, logs)
-    declared = on_runs_of(terms.found.task, terms.verdict.declared, final.fit.runs)
+    declared = on_runs_of(terms.found.problem, terms.verdict.declared, final.fit.runs)
     gains = {**verdict.gains, **dict.fromkeys([c.key for c in own], earned)}
     return replace(
         outcome,
@@ -365,9 +370,9 @@ def _with_structure(
 
 def _declared_validation(terms: Outcome, after: Fit, logs: Logs) -> Fit:
     """The validation runs by the declared model, in the windows of another fit of them."""
-    task, declared = terms.found.task, terms.verdict.declared
-    whole = prepare_runs(task.model, terms.platform, logs.validate)
-    return simulated_freely(task, parted_like(task.model, whole, after.runs), declared.values)
+    problem, declared = terms.found.problem, terms.verdict.declared
+    whole = prepare_runs(problem.model, terms.platform, logs.validate)
+    return simulated_freely(problem, parted_like(problem.model, whole, after.runs), declared.values)
 
 
 def _is_borne_out(named: Outcome, terms: Outcome, quiet: bool) -> bool:
@@ -375,7 +380,7 @@ def _is_borne_out(named: Outcome, terms: Outcome, quiet: bool) -> bool:
     held_out = named.verdict.held_out
     if held_out is None:
         return False
-    return is_validated(held_out, quiet, False, named.task.material)
+    return is_validated(held_out, quiet, False, named.problem.material)
 
 
 def _row(

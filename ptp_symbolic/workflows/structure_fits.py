@@ -8,6 +8,7 @@ from functools import cached_property
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models.structures import Rebuilt
 from ptp_symbolic.numeric.data import Log
+from ptp_symbolic.numeric.diagnose.fitted_model import side_by_side
 from ptp_symbolic.numeric.diagnose.structures import (
     Begun,
     FittedStructure,
@@ -17,10 +18,9 @@ from ptp_symbolic.numeric.diagnose.structures import (
     is_better,
     is_identifiable,
 )
-from ptp_symbolic.numeric.diagnose.trial import side_by_side
 from ptp_symbolic.numeric.identify.evidence import Allowance
 from ptp_symbolic.platform import Platform
-from ptp_symbolic.workflows.preparation import model_of, task_for
+from ptp_symbolic.workflows.preparation import model_of, problem_for
 from ptp_symbolic.workflows.result import Progress
 
 FOLLOWED = 2  # structures that go on into the search for terms where none leaves noise alone
@@ -118,7 +118,7 @@ def _begun(
     platform: Platform, rebuilt: Rebuilt | None, logs: Logs, known: Mapping[str, float]
 ) -> Begun:
     model = model_of(platform)
-    task = task_for(
+    problem = problem_for(
         platform,
         model,
         logs.train,
@@ -129,8 +129,8 @@ def _begun(
         logs.allowance,
     )
     if rebuilt is None:
-        return begin_structure((), frozenset(), task, (), known)
-    return begin_structure(rebuilt.keys, rebuilt.provides, task, rebuilt.starts, known)
+        return begin_structure((), frozenset(), problem, (), known)
+    return begin_structure(rebuilt.keys, rebuilt.provides, problem, rebuilt.starts, known)
 
 
 def _better_half(begun: Sequence[Begun], declared: FittedStructure) -> tuple[int, ...]:

@@ -8,6 +8,7 @@ import numpy as np
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.diagnose.confirm import at_bound
+from ptp_symbolic.numeric.diagnose.fitted_model import FittedModel
 from ptp_symbolic.numeric.diagnose.hints import further_hints
 from ptp_symbolic.numeric.diagnose.noise_floor import NoiseFloor
 from ptp_symbolic.numeric.diagnose.remainder import hints, remainder, residual_tests
@@ -22,7 +23,6 @@ from ptp_symbolic.numeric.diagnose.summary import (
     repeatability_table,
     sizes_of,
 )
-from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.diagnose.verdict import reasons
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.numeric.identify.windows import estimable
@@ -67,12 +67,12 @@ def written_up(
     `beside` how rivals do that know no physics.
     """
     chosen = choice.chosen
-    task, found, verdict = chosen.task, chosen.found, chosen.verdict
+    problem, found, verdict = chosen.problem, chosen.found, chosen.verdict
     after = verdict.final
     intervals = {e.name: e for e in estimates(verdict.estimated)}
     before = verdict.estimated
     if after is not verdict.declared:
-        before = estimable(verdict.declared.fit, task.input_noise, task.executor)
+        before = estimable(verdict.declared.fit, problem.input_noise, problem.executor)
     parts = {
         "train": (verdict.declared.fit, after.fit),
         "validate": (verdict.before, verdict.after),
@@ -80,7 +80,7 @@ def written_up(
     errors = error_table(parts, verdict.floor)
     extended = with_effects(chosen.platform, after)
     module, doubts = _module_of(extended)
-    doubts += _carried_remarks(platform, verdict.floor)
+    doubts += _propagated_remarks(platform, verdict.floor)
     doubts += _tied_remarks(platform) if verdict.leaves_more else []
     if choice.terms.found.is_taken_over:
         doubts.append(TAKEN_OVER)
@@ -104,8 +104,8 @@ def written_up(
         "added": added,
         "ranking": _ranking(choice),
         "error": errors,
-        "repeatability": repeatability_table(task.whole, task.model.units),
-        "residual_tests": residual_tests(verdict.after, task.model.input_names),
+        "repeatability": repeatability_table(problem.whole, problem.model.units),
+        "residual_tests": residual_tests(verdict.after, problem.model.input_names),
         "fit": {
             "before": {"parameters": fit_table(verdict.declared, estimates(before))},
             "after": {"parameters": fit_table(after, tuple(intervals.values()))},
@@ -117,12 +117,14 @@ def written_up(
         "hints": [*hints(left), *further],
         "black_box": None if beside is None else dict(beside),
         "windows": errors["train"]["after"]["windows"],
-        "material": task.material,
+        "material": problem.material,
         "remarks": [*noted, *doubts],
         "equations": equations,
         "provenance": dict(sources),
     }
-    changes = task.executor.submit(with_pdf, render_changes(platform, extended, summary), "changes")
+    changes = problem.executor.submit(
+        with_pdf, render_changes(platform, extended, summary), "changes"
+    )
     curves = curves_of(parts)
     files: dict[str, str | bytes] = {"platform.toml": platform_text(extended)}
     files["equations.tex"] = equations_tex(equations, added, assemble(extended))
@@ -143,7 +145,7 @@ def _ranking(choice: Choice) -> list[dict[str, Any]]:
     rows = list(choice.rows)
     outcomes = [choice.chosen] if choice.chosen.structure is None else [choice.chosen, choice.terms]
     for outcome in outcomes:
-        sets = ranking(outcome.found, outcome.verdict, outcome.task.candidates)
+        sets = ranking(outcome.found, outcome.verdict, outcome.problem.candidates)
         if outcome is not choice.chosen:
             sets = [{**row, "accepted": False} for row in sets]
         rows += [{**row, "structure": list(outcome.keys)} for row in sets]
@@ -165,7 +167,7 @@ def _ranking(choice: Choice) -> list[dict[str, Any]]:
 
 
 def _bound_hints(
-    platform: Platform, tried: Sequence[Trial], refused: Mapping[str, str]
+    platform: Platform, tried: Sequence[FittedModel], refused: Mapping[str, str]
 ) -> list[str]:
     """Of declared values that ended at the end of what they may be, in the first of the trials (the
     closest) or where that is why they are not named: how to let them go farther.
@@ -247,12 +249,12 @@ def _module_of(extended: Platform) -> tuple[dict[str, str], list[str]]:
         return {}, [f"The declared and the found values exclude each other. {error}"]
 
 
-def _carried_remarks(platform: Platform, floor: NoiseFloor) -> list[str]:
+def _propagated_remarks(platform: Platform, floor: NoiseFloor) -> list[str]:
     """Inputs whose noise, estimated from the logs, leaves more in an output than its own does. A
     command that a controller computed from a noisy angle looks noisy, and is known exactly.
     """
     names = [s.signal for s in platform.signals if s.role == "input" and s.noise is None]
-    if not names or np.all(floor.carried.usual <= floor.noise):
+    if not names or np.all(floor.propagated.median <= floor.noise):
         return []
     return [
         f"The noise of {' and '.join(names)}, estimated from the logs, causes a larger error than"

@@ -15,8 +15,8 @@ from unittest.mock import patch
 
 from ptp_symbolic.numeric.data import Log, read_split_logs
 from ptp_symbolic.numeric.diagnose import along_rows, search, structures
+from ptp_symbolic.numeric.diagnose.fitted_model import SearchProblem
 from ptp_symbolic.numeric.diagnose.proposals import in_rows_of, propose
-from ptp_symbolic.numeric.diagnose.trial import Task
 from ptp_symbolic.numeric.identify.evidence import (
     Allowance,
     Entry,
@@ -28,7 +28,7 @@ from ptp_symbolic.numeric.identify.evidence import (
 from ptp_symbolic.platform import Platform, read_platform
 from ptp_symbolic.workflows import structure_choice, structure_fits
 from ptp_symbolic.workflows.diagnosis import SAMPLES
-from ptp_symbolic.workflows.preparation import material_of, model_of, task_for, workers
+from ptp_symbolic.workflows.preparation import material_of, model_of, problem_for, workers
 from ptp_symbolic.workflows.provenance import provenance
 from ptp_symbolic.workflows.rules import RULES, Rule, switched_off
 from ptp_symbolic.workflows.stored_evidence import FILE, Header, read_evidence, written
@@ -114,7 +114,7 @@ class Case:
 
     @contextmanager
     def _made_once(self) -> Iterator[None]:
-        """Models, tasks and proposals from memory, where they were made before."""
+        """Models, problems and proposals from memory, where they were made before."""
 
         def once(key: str, make: Callable[[], Any]) -> Any:
             if key not in self.made:
@@ -124,18 +124,18 @@ class Case:
         def model(platform: Platform) -> Any:
             return once(key_of("model", platform), lambda: model_of(platform))
 
-        def task(platform: Platform, own: Any, *rest: Any) -> Task:
+        def problem(platform: Platform, own: Any, *rest: Any) -> SearchProblem:
             *_, declared, executor, _progress, allowance = rest
-            key = key_of("task", platform, own, declared)
-            found = once(key, lambda: task_for(platform, own, *rest))
+            key = key_of("problem", platform, own, declared)
+            found = once(key, lambda: problem_for(platform, own, *rest))
             material = material_of(platform)
             return replace(found, executor=executor, allowance=allowance, material=material)
 
-        def proposed(given: Task) -> Any:
+        def proposed(given: SearchProblem) -> Any:
             parts = given.whole, given.free, given.candidates
             return once(key_of("proposals", given, *parts), lambda: propose(given))
 
-        def in_rows(given: Task, space: Any, values: Any, beside: Any) -> Any:
+        def in_rows(given: SearchProblem, space: Any, values: Any, beside: Any) -> Any:
             parts = given.whole, given.free, given.candidates, space.half_width, values, beside
             return once(key_of("rows", given, *parts), lambda: in_rows_of(given, space, *parts[4:]))
 
@@ -143,8 +143,8 @@ class Case:
             patch.object(along_rows, "in_rows_of", in_rows),
             patch.object(structure_choice, "model_of", model),
             patch.object(structure_fits, "model_of", model),
-            patch.object(structure_choice, "task_for", task),
-            patch.object(structure_fits, "task_for", task),
+            patch.object(structure_choice, "problem_for", problem),
+            patch.object(structure_fits, "problem_for", problem),
             patch.object(search, "propose", proposed),
             patch.object(structures, "propose", proposed),
         ):

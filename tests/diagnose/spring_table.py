@@ -1,4 +1,4 @@
-"""Logs whose motion is known in closed form, and the task to find what their platform lacks.
+"""Logs whose motion is known in closed form, and the problem to find what their platform lacks.
 
 A body on a spring and a damper under a torque that is held from sample to sample: its motion is a
 matrix exponential. The platform declares the damper, and a payload of known mass, alone.
@@ -14,8 +14,8 @@ from scipy.linalg import expm
 
 from ptp_symbolic.models import declared, emission, variants
 from ptp_symbolic.numeric.data import Log
-from ptp_symbolic.numeric.diagnose.preparation import task_of
-from ptp_symbolic.numeric.diagnose.trial import Task
+from ptp_symbolic.numeric.diagnose.fitted_model import SearchProblem
+from ptp_symbolic.numeric.diagnose.preparation import problem_of
 from ptp_symbolic.numeric.identify.constants import MATERIAL
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.platform import read_platform
@@ -112,15 +112,15 @@ def spring_table(
     gust: float = 0.0,
     lasting: int = 1,
     gyro: bool = False,
-) -> Iterator[Task]:
-    """The task, its platform written to `folder`; the other arguments are those of `log`."""
+) -> Iterator[SearchProblem]:
+    """The problem, its platform written to `folder`; the other arguments are those of `log`."""
     text = PLATFORM + GYRO if gyro else PLATFORM
 
     def logged(seed: int) -> Log:
         return log(seed, stiffness, gust, lasting, gyro=gyro)
 
-    with table_of(folder, logged, text=text) as task:
-        yield task
+    with table_of(folder, logged, text=text) as problem:
+        yield problem
 
 
 @contextmanager
@@ -129,9 +129,9 @@ def table_of(
     logged: Callable[[int], Log],
     validation: tuple[int, ...] = (3,),
     text: str = PLATFORM,
-) -> Iterator[Task]:
-    """The task of the platform `text`, written to `folder`, with what is `logged` by seed, two logs
-    to be fitted, and others for `validation`.
+) -> Iterator[SearchProblem]:
+    """The problem of the platform `text`, written to `folder`, with what is `logged` by seed, two
+    logs to be fitted, and others for `validation`.
     """
     path = folder / "table.toml"
     path.write_text(text)
@@ -144,7 +144,7 @@ def table_of(
     free, known = declared.free_parameters(platform, model), declared.known_values(platform, model)
     noises = {signal.signal: signal.noise for signal in platform.signals}
     with ThreadPoolExecutor(2) as executor:
-        yield task_of(
+        yield problem_of(
             model,
             train,
             validate,

@@ -10,11 +10,11 @@ import pytest
 
 from ptp_symbolic.numeric.diagnose import along_rows
 from ptp_symbolic.numeric.diagnose.along_rows import AlongMotion, extended_along_motion
-from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise
+from ptp_symbolic.numeric.diagnose.fitted_model import fitted
+from ptp_symbolic.numeric.diagnose.noise_floor import propagated_input_noise
 from ptp_symbolic.numeric.diagnose.proposals import declared_start, propose
 from ptp_symbolic.numeric.diagnose.refits import fit_declared
 from ptp_symbolic.numeric.diagnose.stepwise import StepwiseSearch
-from ptp_symbolic.numeric.diagnose.trial import fitted
 from ptp_symbolic.numeric.diagnose.verdict import _near_floor, _Set
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 from ptp_symbolic.numeric.identify.intervals import estimates
@@ -26,9 +26,9 @@ GUST = 0.05  # N m: a tenth of the largest logged torque
 def grown(
     folder: Path, stiffness: float, lasting: int = 1, gyro: bool = False
 ) -> AlongMotion | None:
-    with spring_table(folder, stiffness, GUST, lasting, gyro) as task:
-        declared = fitted(task, (), declared_start(task), None)
-        return extended_along_motion(task, propose(task), declared, task.train)
+    with spring_table(folder, stiffness, GUST, lasting, gyro) as problem:
+        declared = fitted(problem, (), declared_start(problem), None)
+        return extended_along_motion(problem, propose(problem), declared, problem.train)
 
 
 @pytest.mark.parametrize("gyro", [False, True])
@@ -65,11 +65,11 @@ def test_validation_runs_are_seen_in_windows_as_short_as_training_runs(
         return space
 
     monkeypatch.setattr(along_rows, "equation_space", noted)
-    with spring_table(tmp_path, STIFFNESS, GUST) as task:
-        declared = fitted(task, (), declared_start(task), None)
-        assert extended_along_motion(task, propose(task), declared, task.train) is not None
+    with spring_table(tmp_path, STIFFNESS, GUST) as problem:
+        declared = fitted(problem, (), declared_start(problem), None)
+        assert extended_along_motion(problem, propose(problem), declared, problem.train) is not None
     train, validate = spaces
-    assert (train.runs, validate.runs) == (task.whole, task.validate)
+    assert (train.runs, validate.runs) == (problem.whole, problem.validate)
     assert (train.half_width, validate.half_width) == (0.15, 0.15)
 
 
@@ -84,16 +84,18 @@ def test_a_set_that_reaches_the_floor_of_the_outputs_is_fitted_to_these(
     gust: float, near: bool, tmp_path: Path
 ) -> None:
     """Begun 3 % off in all values; the gusts leave 20 counts whatever they are."""
-    with spring_table(tmp_path, STIFFNESS, gust) as task:
-        proposals = propose(task)
-        task, declared = fit_declared(task, proposals)
-        stepwise = StepwiseSearch(task, declared, proposals, carried_noise(task, declared.fit))
+    with spring_table(tmp_path, STIFFNESS, gust) as problem:
+        proposals = propose(problem)
+        problem, declared = fit_declared(problem, proposals)
+        stepwise = StepwiseSearch(
+            problem, declared, proposals, propagated_input_noise(problem, declared.fit)
+        )
         (spring,) = [
-            c for c in task.candidates if c.key == "cable_spring@pan" and len(c.defining) == 1
+            c for c in problem.candidates if c.key == "cable_spring@pan" and len(c.defining) == 1
         ]
         truth = {"J_pan": INERTIA - PAYLOAD, "b_pan": DAMPING, "k1_cable_pan": STIFFNESS}
         values = declared.values | {name: 1.03 * value for name, value in truth.items()}
-        along = fitted(task, (spring,), values, None)
+        along = fitted(problem, (spring,), values, None)
         found = _near_floor(stepwise, [_Set(along, along, along.fit, {}, {}, ())])
         assert (found is not None) is near
         if found is not None:

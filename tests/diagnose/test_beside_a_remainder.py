@@ -8,9 +8,9 @@ import pytest
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.confirm import _doubt_beside_residual
+from ptp_symbolic.numeric.diagnose.fitted_model import FittedModel
 from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.stepwise import Step
-from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.straight import finished
 
@@ -25,8 +25,8 @@ def doubt_for(*sizes: float) -> str | None:
     """What speaks against a candidate without which six runs leave so many times as much."""
     candidate = Candidate("spring", None, "", "", (), {})
     more = [size * left for size, left in zip(sizes, LEFT, strict=True)]
-    whole = Trial((candidate,), finished(list(LEFT), SLOPES, free=FREE))
-    without = Trial((), finished(more, SLOPES, free=FREE))
+    whole = FittedModel((candidate,), finished(list(LEFT), SLOPES, free=FREE))
+    without = FittedModel((), finished(more, SLOPES, free=FREE))
     return _doubt_beside_residual(TASK, whole, Step(candidate, gain(whole, without), 0.0, without))
 
 

@@ -15,9 +15,9 @@ from ptp_symbolic.numeric.diagnose.confirm import (
     is_reproduced_by_others,
     why_unconfirmed,
 )
+from ptp_symbolic.numeric.diagnose.fitted_model import FittedModel
 from ptp_symbolic.numeric.diagnose.gain import Gain, p_value
 from ptp_symbolic.numeric.diagnose.stepwise import is_earned, looked_at
-from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.constants import FALSE_ALARM
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from ptp_symbolic.numeric.identify.intervals import estimates
@@ -203,9 +203,9 @@ def test_what_a_few_blocks_show_beyond_doubt_is_clear() -> None:
     """One run in six shows the effect, in a third of its samples; noise alone is not clear."""
     pulse = np.where(np.arange(600) % 300 < 100, np.sin(0.1 * np.arange(600)), 0.0)
     columns = [0.0 * pulse] * 5 + [pulse]
-    found = Trial((), fit_of(columns, [1.0] * 6))
+    found = FittedModel((), fit_of(columns, [1.0] * 6))
     assert p_value(found, {"k": 0.0}) < 1e-6
-    nothing = Trial((), fit_of(columns, [0.0] * 6))
+    nothing = FittedModel((), fit_of(columns, [0.0] * 6))
     assert p_value(nothing, {"k": 0.0}) > 0.01
 
 

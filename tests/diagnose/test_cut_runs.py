@@ -9,11 +9,11 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from ptp_symbolic.numeric.diagnose.cut_runs import in_windows_of
+from ptp_symbolic.numeric.diagnose.fitted_model import SearchProblem, fitted
 from ptp_symbolic.numeric.diagnose.noise_floor import normalised_residual
 from ptp_symbolic.numeric.diagnose.proposals import ProposedSets
 from ptp_symbolic.numeric.diagnose.refits import fitted_over_windows
 from ptp_symbolic.numeric.diagnose.summary import windows_of
-from ptp_symbolic.numeric.diagnose.trial import Task, fitted
 from ptp_symbolic.numeric.identify.constants import ITERATIONS
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from ptp_symbolic.numeric.identify.run import Run
@@ -23,14 +23,14 @@ PAYLOAD = {"m_payload": 5.0, "c_x_payload": 0.001}
 
 
 @pytest.fixture(scope="module")
-def task() -> Iterator[Task]:
+def problem() -> Iterator[SearchProblem]:
     """Runs above the axis, where a small angle grows a hundred and four times, and one below it,
     declared without the payload.
     """
     up, down, little = (pendulum(*of)[0] for of in ((100.0, True), (100.0, False), (4.0, True)))
     train = (up, down, little)
     with ThreadPoolExecutor(2) as executor:
-        yield Task(
+        yield SearchProblem(
             MODEL,
             train,
             train,
@@ -49,10 +49,10 @@ def task() -> Iterator[Task]:
         )
 
 
-def test_runs_in_which_a_set_multiplies_errors_are_cut_and_no_other(task: Task) -> None:
+def test_runs_in_which_a_set_multiplies_errors_are_cut_and_no_other(problem: SearchProblem) -> None:
     """2.4 s above the axis are two windows; from four times up to ten a run stays whole."""
-    up, down, little = task.train
-    part = in_windows_of(task, fitted(task, (), {**task.fixed, **PAYLOAD}, None))
+    up, down, little = problem.train
+    part = in_windows_of(problem, fitted(problem, (), {**problem.fixed, **PAYLOAD}, None))
     first, second, *whole = part.train
     assert (first.source, second.source) == (up.source, up.source)
     assert len(first.time) + len(second.time) == len(up.time) + 1
@@ -80,14 +80,14 @@ def falling(duration: float) -> Run:
     return run_of(rest, fall.y[0], rest, 0.005)
 
 
-def test_windows_that_the_fitted_model_cannot_follow_are_cut_again(task: Task) -> None:
+def test_windows_that_the_fitted_model_cannot_follow_are_cut_again(problem: SearchProblem) -> None:
     """A payload that is declared a tenth too heavy leaves the top sooner than the true one: that is
     157 counts over 4 s, and 77 over windows of 1 s.
     """
-    heavy = {**task.fixed, **PAYLOAD, "m_payload": 1.1 * PAYLOAD["m_payload"]}
+    heavy = {**problem.fixed, **PAYLOAD, "m_payload": 1.1 * PAYLOAD["m_payload"]}
     run = falling(4.0)
     known = replace(
-        task,
+        problem,
         train=(run,),
         every_sample=(run,),
         validate=(run,),
@@ -104,5 +104,5 @@ def test_windows_that_the_fitted_model_cannot_follow_are_cut_again(task: Task) -
     assert np.max(normalised_residual(trial.fit)) < 0.6 * np.max(normalised_residual(whole.fit))
 
 
-def test_a_set_that_multiplies_none_leaves_the_runs_as_they_are(task: Task) -> None:
-    assert in_windows_of(task, fitted(task, (), task.fixed, None)) is task
+def test_a_set_that_multiplies_none_leaves_the_runs_as_they_are(problem: SearchProblem) -> None:
+    assert in_windows_of(problem, fitted(problem, (), problem.fixed, None)) is problem

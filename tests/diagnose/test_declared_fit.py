@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise
+from ptp_symbolic.numeric.diagnose.fitted_model import fitted
+from ptp_symbolic.numeric.diagnose.noise_floor import propagated_input_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.refits import better_over_same_runs, over_whole_runs
 from ptp_symbolic.numeric.diagnose.stepwise import Search, Tried
-from ptp_symbolic.numeric.diagnose.trial import fitted
 from ptp_symbolic.numeric.diagnose.verdict import with_declared_over_windows
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.diagnosis import diagnose_platform
@@ -20,13 +20,13 @@ from tests.diagnose.spring_table import DAMPING, INERTIA, PAYLOAD, PLATFORM, log
 
 def test_a_search_that_ended_early_gives_the_declared_model_its_best_fit(tmp_path: Path) -> None:
     """A machine of which nothing is missing, whose search ended with twice its damping."""
-    with spring_table(tmp_path, stiffness=0.0) as task:
-        proposals = propose(task)
-        task, end = over_whole_runs(task, proposals)
-        stuck = fitted(task, (), end.values | {"b_pan": 2.0 * DAMPING}, None)
-        carried = carried_noise(task, end.fit)
+    with spring_table(tmp_path, stiffness=0.0) as problem:
+        proposals = propose(problem)
+        problem, end = over_whole_runs(problem, proposals)
+        stuck = fitted(problem, (), end.values | {"b_pan": 2.0 * DAMPING}, None)
+        propagated = propagated_input_noise(problem, end.fit)
         found = Search(
-            task, stuck, stuck, (), Tried(), proposals, carried, False, is_over_windows=False
+            problem, stuck, stuck, (), Tried(), proposals, propagated, False, is_over_windows=False
         )
         best = with_declared_over_windows(found)
     assert best.declared is best.chosen
@@ -38,10 +38,10 @@ def test_a_search_that_ended_early_gives_the_declared_model_its_best_fit(tmp_pat
 
 
 def test_windows_that_lead_to_a_worse_place_lead_nowhere(tmp_path: Path) -> None:
-    with spring_table(tmp_path, stiffness=0.0) as task:
-        proposals = propose(task)
-        task, end = over_whole_runs(task, proposals)
-        worse = fitted(task, (), end.values | {"b_pan": 2.0 * DAMPING}, None)
+    with spring_table(tmp_path, stiffness=0.0) as problem:
+        proposals = propose(problem)
+        problem, end = over_whole_runs(problem, proposals)
+        worse = fitted(problem, (), end.values | {"b_pan": 2.0 * DAMPING}, None)
     assert better_over_same_runs(end, worse) is end
     assert better_over_same_runs(worse, end) is end
 

@@ -12,7 +12,7 @@ import pytest
 
 from ptp_symbolic.cli.diagnose import _print_diagnosis
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.diagnose.trial import fitted
+from ptp_symbolic.numeric.diagnose.fitted_model import fitted
 from ptp_symbolic.numeric.identify import evaluate
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.diagnosis import diagnose_platform
@@ -208,7 +208,7 @@ def test_a_rule_has_the_price_that_a_hand_gives_it(
 
     def from_elsewhere(stepwise, chosen, refused=None):
         moved = {n: 1.01 * v for n, v in chosen.values.items()}
-        fitted(stepwise.task, chosen.candidates, moved, None)
+        fitted(stepwise.problem, chosen.candidates, moved, None)
 
     rules = (
         Rule("word", "", (f"{verdict}:word_of",), lambda *given: "unexplained"),

@@ -8,6 +8,7 @@ import pytest
 from scipy import special, stats
 from scipy.signal import lfilter
 
+from ptp_symbolic.numeric.diagnose.fitted_model import TUNING, FittedModel
 from ptp_symbolic.numeric.diagnose.gain import (
     Gain,
     compared,
@@ -15,17 +16,16 @@ from ptp_symbolic.numeric.diagnose.gain import (
     gain_in_innovations,
     held_out_gain,
 )
-from ptp_symbolic.numeric.diagnose.trial import TUNING, Trial
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
 
 
-def trial(residuals: Sequence[Floats], columns: Sequence[Floats] | None = None) -> Trial:
+def trial(residuals: Sequence[Floats], columns: Sequence[Floats] | None = None) -> FittedModel:
     """A fit that leaves `residuals` per run, `columns` [k, nf] fitted."""
     free = () if columns is None else [free_parameter("b", 1.0, -9.0, 9.0)] * columns[0].shape[1]
     slopes = None if columns is None else [-c for c in columns]
-    return Trial((), finished(residuals, slopes, None, free))
+    return FittedModel((), finished(residuals, slopes, None, free))
 
 
 def test_against_a_steady_loss_the_statistic_is_students() -> None:

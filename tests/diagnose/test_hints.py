@@ -22,7 +22,7 @@ from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.refits import fit_declared
 from ptp_symbolic.numeric.diagnose.remainder import change_of
 from ptp_symbolic.platform import read_platform
-from ptp_symbolic.workflows.preparation import model_of, task_for, workers
+from ptp_symbolic.workflows.preparation import model_of, problem_for, workers
 
 DRAWS = 200
 PERIOD = 0.005  # s
@@ -280,9 +280,11 @@ def test_the_gap_of_log_n_is_said_with_its_angle(shared: Path) -> None:
     platform = read_platform(shared / "fieldlogs" / "rigid_gear.toml")
     logs = read_logs(log_files([shared / "fieldlogs" / "log-n" / "train"]), platform)
     with workers() as executor:
-        task = task_for(platform, model_of(platform), logs, logs, (), executor, lambda _: None)
-        proposals = propose(task)
-        task, trial = fit_declared(task, proposals)
+        problem = problem_for(
+            platform, model_of(platform), logs, logs, (), executor, lambda _: None
+        )
+        proposals = propose(problem)
+        problem, trial = fit_declared(problem, proposals)
         said = further_hints(trial, proposals.space)
     assert len(said) == 1
     assert "After pan turns back, its motion lags by 1.6" in said[0]

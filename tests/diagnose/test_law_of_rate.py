@@ -11,8 +11,8 @@ from ptp_symbolic.numeric.data import Log
 from ptp_symbolic.numeric.diagnose import along_rows
 from ptp_symbolic.numeric.diagnose.along_rows import _Motion, extended_along_motion
 from ptp_symbolic.numeric.diagnose.confirm import contradicts_its_law
+from ptp_symbolic.numeric.diagnose.fitted_model import fitted
 from ptp_symbolic.numeric.diagnose.proposals import declared_start, propose, start_for
-from ptp_symbolic.numeric.diagnose.trial import fitted
 from tests.diagnose.spring_table import (
     COUNT,
     DAMPING,
@@ -74,15 +74,15 @@ def logged(hidden: Torque, seed: int) -> Log:
 def test_a_spring_that_is_stronger_where_it_is_fast_is_none(
     hidden: Torque, breaks: bool, mostly: bool, tmp_path: Path
 ) -> None:
-    with table_of(tmp_path, lambda seed: logged(hidden, seed)) as task:
-        proposals = propose(task)
+    with table_of(tmp_path, lambda seed: logged(hidden, seed)) as problem:
+        proposals = propose(problem)
         (found,) = [
-            c for c in task.candidates if c.key == "cable_spring@pan" and len(c.defining) == 1
+            c for c in problem.candidates if c.key == "cable_spring@pan" and len(c.defining) == 1
         ]
-        values = start_for(task, proposals, (found,), proposals.start)
+        values = start_for(problem, proposals, (found,), proposals.start)
         assert abs(values["k1_cable_pan"]) > 0.2 * STIFFNESS
         assert proposals.space is not None
-        law = (task, proposals.space, (found,), values, found)
+        law = (problem, proposals.space, (found,), values, found)
         assert contradicts_its_law(*law) is breaks
         assert contradicts_its_law(*law, loosely=True) is mostly
 
@@ -99,9 +99,9 @@ def test_what_broke_its_law_has_to_keep_it_along_the_motion(
     hidden: Torque, key: str, named: bool, tmp_path: Path
 ) -> None:
     """Beside a second friction, drag makes up in the rows for a torque cubic in the rate."""
-    with table_of(tmp_path, lambda seed: logged(hidden, seed)) as task:
-        declared = fitted(task, (), declared_start(task), None)
-        grown = extended_along_motion(task, propose(task), declared, task.train, [key])
+    with table_of(tmp_path, lambda seed: logged(hidden, seed)) as problem:
+        declared = fitted(problem, (), declared_start(problem), None)
+        grown = extended_along_motion(problem, propose(problem), declared, problem.train, [key])
         assert (key in grown.trial.keys if grown else False) is named
 
 
@@ -110,10 +110,10 @@ def test_the_law_is_asked_for_loosely_of_what_has_not_broken_it(
 ) -> None:
     """Here every spring breaks its law loosely, and none strictly."""
     monkeypatch.setattr(along_rows, "contradicts_its_law", lambda *_, loosely: loosely)
-    with table_of(tmp_path, lambda seed: logged(spring, seed)) as task:
-        declared, found = fitted(task, (), declared_start(task), None), propose(task)
-        assert extended_along_motion(task, found, declared, task.train) is None
-        grown = extended_along_motion(task, found, declared, task.train, ["cable_spring@pan"])
+    with table_of(tmp_path, lambda seed: logged(spring, seed)) as problem:
+        declared, found = fitted(problem, (), declared_start(problem), None), propose(problem)
+        assert extended_along_motion(problem, found, declared, problem.train) is None
+        grown = extended_along_motion(problem, found, declared, problem.train, ["cable_spring@pan"])
         assert grown is not None and grown.trial.keys == ("cable_spring@pan",)
 
 
@@ -121,10 +121,10 @@ def test_the_law_is_asked_for_loosely_of_what_has_not_broken_it(
 def test_a_fuller_form_that_earns_nothing_is_left_out_along_the_motion(
     hidden: Torque, cubic: bool, tmp_path: Path
 ) -> None:
-    with table_of(tmp_path, lambda seed: logged(hidden, seed)) as task:
-        proposals = propose(task)
+    with table_of(tmp_path, lambda seed: logged(hidden, seed)) as problem:
+        proposals = propose(problem)
         assert proposals.space is not None and proposals.regression is not None
-        motion = _Motion(task, proposals.space, proposals.regression, proposals.start, ())
+        motion = _Motion(problem, proposals.space, proposals.regression, proposals.start, ())
         springs = [
             s.candidate
             for s in proposals.regression.signatures

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.data import Log
-from ptp_symbolic.numeric.diagnose.preparation import task_of
+from ptp_symbolic.numeric.diagnose.preparation import problem_of
 from ptp_symbolic.numeric.identify.blocks import MANY_RUNS
 from ptp_symbolic.numeric.identify.constants import FORGOTTEN, SHORT
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
@@ -30,7 +30,7 @@ def leading(seconds: float) -> tuple[tuple[Run, ...], ...]:
     known = {name: (value, None) for name, value in others.items()}
     noises = dict.fromkeys(MODEL.input_names, 0.0)
     with ThreadPoolExecutor(1) as executor:
-        return task_of(
+        return problem_of(
             MODEL, runs, runs, free, known, (), noises, None, 0.1, executor, lambda text: None
         ).windows
 

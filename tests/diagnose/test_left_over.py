@@ -12,14 +12,14 @@ from scipy import stats
 
 from ptp_symbolic.numeric.diagnose import noise_floor as module
 from ptp_symbolic.numeric.diagnose.confirm import _examined
+from ptp_symbolic.numeric.diagnose.fitted_model import FittedModel
 from ptp_symbolic.numeric.diagnose.noise_floor import (
-    Carried,
+    PropagatedNoise,
     bound_of,
-    carried_noise,
     normalised_residual,
+    propagated_input_noise,
 )
 from ptp_symbolic.numeric.diagnose.stepwise import StepwiseSearch
-from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, TEST_ALARM
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.intervals import chance_of_zero
@@ -30,8 +30,8 @@ NOISE = 0.004  # N m
 RUNS = 3
 
 
-def task_of(fit: Fit, *noise: float | None) -> Any:
-    """The task to fit so many equal runs, with `noise` (N m) of the torques."""
+def problem_of(fit: Fit, *noise: float | None) -> Any:
+    """The problem to fit so many equal runs, with `noise` (N m) of the torques."""
     return SimpleNamespace(
         model=fit.model,
         every_sample=fit.runs,
@@ -42,22 +42,22 @@ def task_of(fit: Fit, *noise: float | None) -> Any:
     )
 
 
-def carried(noise: float) -> Carried:
+def propagated(noise: float) -> PropagatedNoise:
     """What `noise` of the torque (N m) leaves of so many equal runs."""
     fit = accelerated(RUNS)
-    return carried_noise(task_of(fit, noise, 0.0), fit)
+    return propagated_input_noise(problem_of(fit, noise, 0.0), fit)
 
 
 def test_what_inputs_carry_is_the_noise_integrated_twice() -> None:
     """Of runs that a start follows, the drift beside a straight line is left."""
-    found = carried(NOISE)
+    found = propagated(NOISE)
     paths = drifts(NOISE, 3000) / SIGMA
     each = [
         normalised_residual(finished(list(paths[:, k : k + RUNS].T)))[0]
         for k in range(0, 3000, RUNS)
     ]
     assert found.usual[0] == pytest.approx(np.median(each), rel=0.25)
-    assert 0.85 < np.mean(each <= found.seldom[0]) <= 0.99
+    assert 0.85 < np.mean(each <= found.rare[0]) <= 0.99
     assert 0.9 < np.mean(each <= found.most[0]) <= 1.0
     assert found.most[1] < 1e-4
 
@@ -70,10 +70,12 @@ def test_declared_noise_excuses_no_more_of_what_is_left_than_of_an_effect(
 ) -> None:
     """The trial itself carries it, whatever others did; what the samples show may be no noise."""
     fit = accelerated(RUNS)
-    others = Carried(*[np.full(2, 0.1)] * 3)
-    stepwise = cast(Any, SimpleNamespace(task=task_of(fit, *noise), carried=others, followed=None))
-    found = StepwiseSearch.input_noise_for(stepwise, Trial((), fit))
-    assert found is others if not own else found.usual[0] == carried(NOISE).usual[0] > 1.0
+    others = PropagatedNoise(*[np.full(2, 0.1)] * 3)
+    stepwise = cast(
+        Any, SimpleNamespace(problem=problem_of(fit, *noise), propagated=others, followed=None)
+    )
+    found = StepwiseSearch.input_noise_for(stepwise, FittedModel((), fit))
+    assert found is others if not own else found.usual[0] == propagated(NOISE).usual[0] > 1.0
 
 
 @pytest.mark.parametrize("freedom", [1, 4, 30])
@@ -93,7 +95,7 @@ def test_a_replay_that_sticks_elsewhere_does_not_hide_what_is_missing() -> None:
 
 
 def test_silent_inputs_carry_nothing() -> None:
-    assert np.all(carried(0.0).most < 1e-4)
+    assert np.all(propagated(0.0).most < 1e-4)
 
 
 def test_many_windows_count_without_the_worst_tenth_and_few_runs_by_their_mean() -> None:
@@ -121,8 +123,8 @@ def test_a_replay_that_cannot_be_simulated_leaves_what_the_others_of_its_run_lea
     def bounds(table: np.ndarray[Any, Any], runs: int) -> list[float]:
         monkeypatch.setattr(module, "replayed_squares", lambda *_: table)
         part = replace(fit, runs=fit.runs[:runs])
-        found = carried_noise(task_of(part, 1.0, 0.0), part)
-        return [float(b[0]) for b in (found.usual, found.seldom, found.most)]
+        found = propagated_input_noise(problem_of(part, 1.0, 0.0), part)
+        return [float(b[0]) for b in (found.usual, found.rare, found.most)]
 
     failed = squares.copy()
     failed[::2] = np.nan
@@ -146,10 +148,12 @@ def test_an_amount_is_known_no_better_than_the_noise_of_the_inputs_allows(
         replace(e, residual=e.residual + 3.0 * rng.standard_normal(e.residual.size))
         for e in fit.evaluations
     ]
-    trial = Trial((), replace(fit, evaluations=tuple(noisy)))
-    task = task_of(fit, noise, 0.0)
-    task.white, task.declared_noise = True, frozenset()
-    stepwise = cast(Any, SimpleNamespace(task=task, carried=Carried(*[np.zeros(2)] * 3)))
+    trial = FittedModel((), replace(fit, evaluations=tuple(noisy)))
+    problem = problem_of(fit, noise, 0.0)
+    problem.white, problem.declared_noise = True, frozenset()
+    stepwise = cast(
+        Any, SimpleNamespace(problem=problem, propagated=PropagatedNoise(*[np.zeros(2)] * 3))
+    )
     examined = _examined(stepwise, trial)
     zero = {"J_pan": fit.values["J_pan"] * 1.05}
     assert (chance_of_zero(examined, zero) < FALSE_ALARM) is known
@@ -157,7 +161,9 @@ def test_an_amount_is_known_no_better_than_the_noise_of_the_inputs_allows(
 
 def test_a_fit_that_leaves_noise_alone_is_examined_without_replays() -> None:
     fit = accelerated(RUNS)
-    task = task_of(fit, NOISE, 0.0)
-    task.white, task.declared_noise = True, frozenset()
-    stepwise = cast(Any, SimpleNamespace(task=task, carried=Carried(*[np.zeros(2)] * 3)))
-    assert _examined(stepwise, Trial((), fit)).by_input_noise == ()
+    problem = problem_of(fit, NOISE, 0.0)
+    problem.white, problem.declared_noise = True, frozenset()
+    stepwise = cast(
+        Any, SimpleNamespace(problem=problem, propagated=PropagatedNoise(*[np.zeros(2)] * 3))
+    )
+    assert _examined(stepwise, FittedModel((), fit)).by_input_noise == ()

@@ -11,9 +11,9 @@ import pytest
 from ptp_symbolic.numeric.diagnose import responses
 from ptp_symbolic.numeric.diagnose.candidates import Candidate, within_reach
 from ptp_symbolic.numeric.diagnose.confirm import is_amount_known
+from ptp_symbolic.numeric.diagnose.fitted_model import FittedModel
 from ptp_symbolic.numeric.diagnose.gain import p_value
 from ptp_symbolic.numeric.diagnose.responses import effect_of, response_columns
-from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.straight import finished, run_of
 
@@ -66,7 +66,7 @@ def test_a_limit_that_cuts_little_off_is_told_from_none_by_little() -> None:
         effect = effect_of(fit, limit.vanishing, table[0])
         assert effect == pytest.approx(-size * slope)
         assert is_amount_known(fit, limit) is told
-        assert (p_value(Trial((limit,), fit), limit.vanishing) < 0.01) is told
+        assert (p_value(FittedModel((limit,), fit), limit.vanishing) < 0.01) is told
 
 
 def test_other_parameters_begin_where_they_did() -> None:
@@ -81,7 +81,7 @@ def test_a_response_stays_below_what_is_asked(monkeypatch: pytest.MonkeyPatch, m
     """A ramp up to 24 V: what a limit cuts off is its excess, so that the response is known."""
     ramp = LARGEST * TIME
 
-    def cut_off(task: Any, fit: Any, values: dict[str, float], executor: Any) -> list[Any]:
+    def cut_off(problem: Any, fit: Any, values: dict[str, float], executor: Any) -> list[Any]:
         left = np.maximum(ramp - values.get("u_max_pan", 1e6), 0.0)
         return [SimpleNamespace(residual=left, failed=None)]
 
@@ -93,8 +93,8 @@ def test_a_response_stays_below_what_is_asked(monkeypatch: pytest.MonkeyPatch, m
         Any, SimpleNamespace(keys=(), fit=SimpleNamespace(runs=(run,), evaluations=[plain]))
     )
     limit = within_reach(LIMIT, MODEL, np.array([0.0, LARGEST]))
-    task = cast(Any, SimpleNamespace(candidates=(limit,)))
-    found = response_columns(task, trial, limit, {}, most)
+    problem = cast(Any, SimpleNamespace(candidates=(limit,)))
+    found = response_columns(problem, trial, limit, {}, most)
     assert found is not None
     value = found.values(np.array([-5.0]))["u_max_pan"]
     assert limit.free[0].start <= value < LARGEST

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 from ptp_symbolic.numeric.data import Log
 from ptp_symbolic.numeric.diagnose import search as roads
-from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise
+from ptp_symbolic.numeric.diagnose.noise_floor import propagated_input_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.refits import over_whole_runs
 from ptp_symbolic.numeric.diagnose.responses import at_lines_of_outputs
@@ -49,10 +49,10 @@ def by_input_noise(seed: int) -> Log:
 
 
 def test_a_base_that_shakes_is_found_at_its_frequency(tmp_path: Path) -> None:
-    with table_of(tmp_path, by_input_noise) as task:
-        proposals = propose(task)
-        task, declared = over_whole_runs(task, proposals)
-        found = at_lines_of_outputs(task, proposals.space, declared, proposals.waves)
+    with table_of(tmp_path, by_input_noise) as problem:
+        proposals = propose(problem)
+        problem, declared = over_whole_runs(problem, proposals)
+        found = at_lines_of_outputs(problem, proposals.space, declared, proposals.waves)
     assert {c.key for c in found} == {"base_motion"}
     (frequency,) = {shape["f_base"] for c in found for shape in c.shapes}
     assert frequency == pytest.approx(SHAKES, abs=CYCLES_APART / SPAN)
@@ -61,21 +61,21 @@ def test_a_base_that_shakes_is_found_at_its_frequency(tmp_path: Path) -> None:
 
 def test_gusts_draw_no_line(tmp_path: Path) -> None:
     """Nor is anything looked for without rows, which tell how far to look."""
-    with spring_table(tmp_path, stiffness=0.0, gust=0.05) as task:
-        proposals = propose(task)
-        task, declared = over_whole_runs(task, proposals)
-        assert at_lines_of_outputs(task, proposals.space, declared, proposals.waves) == ()
-        assert at_lines_of_outputs(task, None, declared, proposals.waves) == ()
+    with spring_table(tmp_path, stiffness=0.0, gust=0.05) as problem:
+        proposals = propose(problem)
+        problem, declared = over_whole_runs(problem, proposals)
+        assert at_lines_of_outputs(problem, proposals.space, declared, proposals.waves) == ()
+        assert at_lines_of_outputs(problem, None, declared, proposals.waves) == ()
 
 
 def test_a_search_goes_on_at_the_lines_of_the_outputs(tmp_path: Path) -> None:
     """Where the rows show none, as if the machine had rested: the base is found with them alone."""
-    with table_of(tmp_path, by_input_noise) as task:
-        proposals = propose(task)
-        blind = tuple(c for c in task.candidates if c.locked is None)
-        task, declared = over_whole_runs(task, proposals)
+    with table_of(tmp_path, by_input_noise) as problem:
+        proposals = propose(problem)
+        blind = tuple(c for c in problem.candidates if c.locked is None)
+        problem, declared = over_whole_runs(problem, proposals)
         stepwise = StepwiseSearch(
-            task, declared, proposals, carried_noise(task, declared.fit)
+            problem, declared, proposals, propagated_input_noise(problem, declared.fit)
         ).among(blind)
 
         lined, found = roads._with_lines(stepwise, [], roads._proposed)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.fitted_model import FittedModel
 from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.groups import (
     Alternative,
@@ -11,20 +12,19 @@ from ptp_symbolic.numeric.diagnose.groups import (
     better_alternative,
     not_refuted,
 )
-from ptp_symbolic.numeric.diagnose.noise_floor import Carried, NoiseFloor
-from ptp_symbolic.numeric.diagnose.trial import Trial
+from ptp_symbolic.numeric.diagnose.noise_floor import NoiseFloor, PropagatedNoise
 from tests.identify.straight import finished
 
 NOISE = np.random.default_rng(3).normal(size=(4, 600))
 
 
-def trial(size: float, *keys: str) -> Trial:
+def trial(size: float, *keys: str) -> FittedModel:
     """A trial that leaves `size` times the same noise in four runs."""
     candidates = tuple(Candidate(key, None, "", "", (), {}) for key in keys)
-    return Trial(candidates, finished([size * noise for noise in NOISE]))
+    return FittedModel(candidates, finished([size * noise for noise in NOISE]))
 
 
-def overtaken_by(*sizes: float, material: float = 0.1) -> Trial | None:
+def overtaken_by(*sizes: float, material: float = 0.1) -> FittedModel | None:
     chosen = trial(1.0)
     others = [trial(size) for size in sizes]
     return better_alternative(
@@ -56,7 +56,7 @@ def test_among_many_rivals_a_gain_must_be_clearer(rivals: int, is_significant: b
     chosen = trial(1.0)
     residuals = [noise.copy() for noise in NOISE]
     residuals[2][:300] = 0.0
-    other = Trial((), finished(residuals))
+    other = FittedModel((), finished(residuals))
     found = better_alternative(chosen, [Alternative(other, gain(chosen, other))] * rivals, 0.1)
     assert found is (other if is_significant else None)
 
@@ -70,22 +70,24 @@ def test_among_many_rivals_a_gain_must_be_clearer(rivals: int, is_significant: b
         (trial(1.3, "spring"), False),
     ],
 )
-def test_only_another_set_that_came_near_is_not_begun_again(other: Trial, near: bool) -> None:
+def test_only_another_set_that_came_near_is_not_begun_again(other: FittedModel, near: bool) -> None:
     """A set that an earlier attempt left far away may be as good as the chosen one: 1.3 squared
     leaves 59 % of it, 2 squared 25 %.
     """
     assert _comes_near(other, trial(1.0, "offset", "delay")) is near
 
 
-@pytest.mark.parametrize(("carried", "kept"), [(0.0, ["a"]), (0.9, ["a"]), (1.6, ["a", "b"])])
-def test_what_noise_of_the_inputs_leaves_refutes_no_rival(carried: float, kept: list[str]) -> None:
+@pytest.mark.parametrize(("propagated", "kept"), [(0.0, ["a"]), (0.9, ["a"]), (1.6, ["a", "b"])])
+def test_what_noise_of_the_inputs_leaves_refutes_no_rival(
+    propagated: float, kept: list[str]
+) -> None:
     """The chosen set leaves the noise of the signal, three others 1.01, 1.8 and 2.5 times that:
     1.6 times it by the inputs are 1.9 in all; less by them than by the signal excuses nothing.
     """
     chosen = trial(1.0)
     others = [trial(size, key) for size, key in ((1.01, "a"), (1.8, "b"), (2.5, "c"))]
     found = [Alternative(other, gain(chosen, other)) for other in others]
-    floor = NoiseFloor(np.ones(1), np.ones(1), Carried(*[np.array([carried])] * 3))
+    floor = NoiseFloor(np.ones(1), np.ones(1), PropagatedNoise(*[np.array([propagated])] * 3))
     left = not_refuted(found, floor, 0.1)
     assert [r.trial.keys for r in left] == [(key,) for key in kept]
     assert [r.is_within_input_noise for r in left] == [False, True][: len(kept)]

@@ -4,21 +4,21 @@ from collections.abc import Iterator
 
 import pytest
 
+from ptp_symbolic.numeric.diagnose.fitted_model import SearchProblem
 from ptp_symbolic.numeric.diagnose.proposals import declared_start, propose
 from ptp_symbolic.numeric.diagnose.stepwise import screened
-from ptp_symbolic.numeric.diagnose.trial import Task
 from ptp_symbolic.numeric.identify.constants import TRIED
 from tests.diagnose.spring_table import INERTIA, PAYLOAD, STIFFNESS, spring_table
 
 
 @pytest.fixture(scope="module")
-def task(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Task]:
+def problem(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SearchProblem]:
     with spring_table(tmp_path_factory.mktemp("table")) as made:
         yield made
 
 
-def test_the_spring_comes_first_at_its_stiffness(task: Task) -> None:
-    found = screened(task, propose(task), (), task.candidates, declared_start(task))
+def test_the_spring_comes_first_at_its_stiffness(problem: SearchProblem) -> None:
+    found = screened(problem, propose(problem), (), problem.candidates, declared_start(problem))
     assert 1 < len(found) <= TRIED  # half of the others go after every iteration
     assert found[0].keys == ("cable_spring@pan",)
     assert found[0].values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.02)

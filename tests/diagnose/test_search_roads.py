@@ -10,13 +10,13 @@ import pytest
 
 from ptp_symbolic.numeric.diagnose import search as roads
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.fitted_model import FittedModel, SearchProblem, fitted
 from ptp_symbolic.numeric.diagnose.gain import gain
-from ptp_symbolic.numeric.diagnose.noise_floor import carried_noise
+from ptp_symbolic.numeric.diagnose.noise_floor import propagated_input_noise
 from ptp_symbolic.numeric.diagnose.proposals import ProposedSet, ProposedSets, propose, start_for
 from ptp_symbolic.numeric.diagnose.refits import is_near_noise_floor, over_whole_runs
 from ptp_symbolic.numeric.diagnose.search import floated
 from ptp_symbolic.numeric.diagnose.stepwise import Step, StepwiseSearch
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted
 from ptp_symbolic.numeric.identify.constants import TRIED
 from ptp_symbolic.numeric.identify.evidence import Allowance
 from tests.diagnose.spring_table import STIFFNESS, spring_table
@@ -25,24 +25,28 @@ STUCK = 1.0002
 
 
 @pytest.fixture(scope="module")
-def begun(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Task, Trial, ProposedSets]]:
-    with spring_table(tmp_path_factory.mktemp("spring")) as task:
-        proposals = propose(task)
-        yield (*over_whole_runs(task, proposals), proposals)
+def begun(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Iterator[tuple[SearchProblem, FittedModel, ProposedSets]]:
+    with spring_table(tmp_path_factory.mktemp("spring")) as problem:
+        proposals = propose(problem)
+        yield (*over_whole_runs(problem, proposals), proposals)
 
 
 @pytest.fixture
-def stepwise(begun: tuple[Task, Trial, ProposedSets]) -> StepwiseSearch:
+def stepwise(begun: tuple[SearchProblem, FittedModel, ProposedSets]) -> StepwiseSearch:
     """A search of its own for every test: tests change what it has found and what it may take."""
-    task, declared, proposals = begun
-    return StepwiseSearch(task, declared, proposals, carried_noise(task, declared.fit))
+    problem, declared, proposals = begun
+    return StepwiseSearch(
+        problem, declared, proposals, propagated_input_noise(problem, declared.fit)
+    )
 
 
 def test_what_leaves_only_noise_is_found_without_windows(
     tmp_path: Path,
 ) -> None:
-    with spring_table(tmp_path) as task:
-        found = roads.search(task)
+    with spring_table(tmp_path) as problem:
+        found = roads.search(problem)
     assert found.chosen.keys == ("cable_spring@pan",)
     assert found.chosen.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
     assert not found.is_over_windows and not found.is_cut_short
@@ -51,8 +55,8 @@ def test_what_leaves_only_noise_is_found_without_windows(
 @pytest.mark.long
 def test_a_spring_is_found_over_windows_where_no_set_leaves_only_noise(tmp_path: Path) -> None:
     """Gusts that no log holds, of a tenth of a second."""
-    with spring_table(tmp_path, gust=0.05, lasting=10) as task:
-        found = roads.search(task)
+    with spring_table(tmp_path, gust=0.05, lasting=10) as problem:
+        found = roads.search(problem)
     assert found.is_over_windows
     assert "cable_spring@pan" in found.chosen.keys
 
@@ -61,34 +65,34 @@ def test_a_search_whose_time_is_over_ends_with_what_the_rows_proposed(
     tmp_path: Path,
 ) -> None:
     """Gusts hide the spring, so that a search with time goes on over windows."""
-    with spring_table(tmp_path, gust=0.05, lasting=10) as task:
-        found = roads.search(replace(task, allowance=Allowance(seconds=1e-3)))
+    with spring_table(tmp_path, gust=0.05, lasting=10) as problem:
+        found = roads.search(replace(problem, allowance=Allowance(seconds=1e-3)))
     assert found.is_cut_short and not found.is_over_windows
     assert found.chosen.keys == ("cable_spring@pan",)
-    assert not found.task.is_over  # the verdict takes what time it needs
+    assert not found.problem.is_over  # the verdict takes what time it needs
 
 
 def test_moves_of_a_search_whose_time_is_over_begin_nothing(stepwise: StepwiseSearch) -> None:
     """A torque instead of the spring, which every move would better."""
     torque = alone(stepwise, "constant_torque@pan")
     moves = [stepwise.grown(torque), stepwise.exchanged(torque)]
-    assert not stepwise.task.is_over and any(moves)
-    stepwise.task = replace(stepwise.task, allowance=Allowance(seconds=-1.0))
-    assert stepwise.task.is_over
+    assert not stepwise.problem.is_over and any(moves)
+    stepwise.problem = replace(stepwise.problem, allowance=Allowance(seconds=-1.0))
+    assert stepwise.problem.is_over
     assert stepwise.grown(torque) is None and stepwise.exchanged(torque) is None
     assert stepwise.restarted(torque) is torque and not stepwise.without_influence(torque)
 
 
-def full_form(task: Task, key: str) -> Candidate:
+def full_form(problem: SearchProblem, key: str) -> Candidate:
     """A candidate with all that it can do."""
-    return max((c for c in task.candidates if c.key == key), key=lambda c: len(c.free))
+    return max((c for c in problem.candidates if c.key == key), key=lambda c: len(c.free))
 
 
 def proposing(stepwise: StepwiseSearch, first: str, then: str) -> StepwiseSearch:
     """The seeker whose rows propose one candidate first, and another one next."""
     sets = [
-        (ProposedSet((one,), start_for(stepwise.task, stepwise.proposals, (one,), {})),)
-        for one in (full_form(stepwise.task, key) for key in (first, then))
+        (ProposedSet((one,), start_for(stepwise.problem, stepwise.proposals, (one,), {})),)
+        for one in (full_form(stepwise.problem, key) for key in (first, then))
     ]
     stepwise.proposals = replace(stepwise.proposals, sets=sets[0], further=lambda: sets[1])
     return stepwise
@@ -125,10 +129,10 @@ def test_the_rows_put_other_sets_next_than_first(stepwise: StepwiseSearch) -> No
 
 def test_a_set_near_the_floor_is_led_to_its_end(stepwise: StepwiseSearch) -> None:
     """A spring 2e-4 too stiff, which is where its fit has ended: four times the noise is left."""
-    spring = full_form(stepwise.task, "cable_spring@pan")
+    spring = full_form(stepwise.problem, "cable_spring@pan")
     end = alone(stepwise, spring.key)
     stiff = end.values | {"k1_cable_pan": end.values["k1_cable_pan"] * STUCK}
-    stuck = fitted(stepwise.task, (spring,), stiff, end.fit.z, 0)
+    stuck = fitted(stepwise.problem, (spring,), stiff, end.fit.z, 0)
     assert is_near_noise_floor(stuck) and not stepwise.is_white(stuck)
     assert stepwise.is_white(stepwise.restarted(stuck))
 
@@ -145,20 +149,20 @@ def test_what_was_found_and_not_chosen_is_remembered(stepwise: StepwiseSearch) -
 def test_a_torque_that_is_not_there_is_taken_out_beside_the_spring(
     stepwise: StepwiseSearch,
 ) -> None:
-    task = stepwise.task
-    both = tuple(full_form(task, key) for key in ("cable_spring@pan", "constant_torque@pan"))
+    problem = stepwise.problem
+    both = tuple(full_form(problem, key) for key in ("cable_spring@pan", "constant_torque@pan"))
     start = stepwise.declared.values | {f.name: f.start for c in both for f in c.free}
-    whole = stepwise.polished(fitted(task, both, start, None))
+    whole = stepwise.polished(fitted(problem, both, start, None))
     assert stepwise.is_white(whole)
     found, _ = stepwise.pruned(whole)
     assert found.keys == ("cable_spring@pan",)
 
 
-def alone(stepwise: StepwiseSearch, key: str) -> Trial:
+def alone(stepwise: StepwiseSearch, key: str) -> FittedModel:
     """One candidate in its fullest form, fitted to its end."""
-    one = full_form(stepwise.task, key)
+    one = full_form(stepwise.problem, key)
     start = stepwise.declared.values | {f.name: f.start for f in one.free}
-    return stepwise.polished(fitted(stepwise.task, (one,), start, None))
+    return stepwise.polished(fitted(stepwise.problem, (one,), start, None))
 
 
 def test_a_torque_that_stands_for_a_spring_ends_as_the_spring(stepwise: StepwiseSearch) -> None:
@@ -171,14 +175,18 @@ def test_what_made_up_for_a_fit_that_was_stuck_is_taken_out(tmp_path: Path) -> N
     """A machine of which nothing is missing, fitted with twice its damping; the spring that makes
     up for a part of that has no gain once the fit comes to its end.
     """
-    with spring_table(tmp_path, stiffness=0.0) as task:
-        proposals = propose(task)
-        task, end = over_whole_runs(task, proposals)
-        stuck = fitted(task, (), end.values | {"b_pan": 0.2}, None)
-        stepwise = StepwiseSearch(task, stuck, proposals, carried_noise(task, end.fit))
-        spring = max((c for c in task.candidates if c.id == "cable_spring"), key=lambda c: c.member)
+    with spring_table(tmp_path, stiffness=0.0) as problem:
+        proposals = propose(problem)
+        problem, end = over_whole_runs(problem, proposals)
+        stuck = fitted(problem, (), end.values | {"b_pan": 0.2}, None)
+        stepwise = StepwiseSearch(
+            problem, stuck, proposals, propagated_input_noise(problem, end.fit)
+        )
+        spring = max(
+            (c for c in problem.candidates if c.id == "cable_spring"), key=lambda c: c.member
+        )
         values = stuck.values | {f.name: f.start for f in spring.free}
-        found = roads._from_declared(stepwise, [fitted(task, (spring,), values, None, 1)])
+        found = roads._from_declared(stepwise, [fitted(problem, (spring,), values, None, 1)])
     assert not found.chosen.candidates
     assert found.declared.values["b_pan"] == pytest.approx(end.values["b_pan"], rel=1e-3)
 
@@ -189,5 +197,5 @@ def test_a_torque_gives_way_to_what_explains_more_than_it_does(stepwise: Stepwis
     steps = [Step(torque.candidates[0], gain(torque, stepwise.declared), 0.0, stepwise.declared)]
     found, _ = floated(stepwise, torque, steps)
     assert found.candidates and "constant_torque@pan" not in found.keys
-    assert gain(found, torque).share >= stepwise.task.material
+    assert gain(found, torque).share >= stepwise.problem.material
     assert floated(stepwise, spring, steps) == (spring, steps)

@@ -5,7 +5,7 @@ from threading import Barrier, get_ident
 
 import pytest
 
-from ptp_symbolic.numeric.diagnose.trial import side_by_side
+from ptp_symbolic.numeric.diagnose.fitted_model import side_by_side
 
 PATIENCE = 60.0  # s; until a piece that waits in vain for the others gives up
 

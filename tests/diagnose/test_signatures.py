@@ -13,8 +13,8 @@ from tests.diagnose.spring_table import spring_table
 
 @pytest.fixture(scope="module")
 def proposals(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ProposedSets]:
-    with spring_table(tmp_path_factory.mktemp("table")) as task:
-        yield propose(task)
+    with spring_table(tmp_path_factory.mktemp("table")) as problem:
+        yield propose(problem)
 
 
 def test_every_signature_is_finite_and_of_full_rank(proposals: ProposedSets) -> None:

@@ -17,7 +17,7 @@ from ptp_symbolic.numeric.diagnose.structures import (
 )
 from ptp_symbolic.numeric.identify.windows import cut, parted_like
 from ptp_symbolic.platform import Platform, read_platform
-from ptp_symbolic.workflows.preparation import model_of, task_for, workers
+from ptp_symbolic.workflows.preparation import model_of, problem_for, workers
 
 R, L, K_T, J_MOTOR, RATIO = 3.0, 4e-3, 0.06, 4e-6, 100.0
 J_LOAD, DRAG, STIFFNESS, DAMPING = 0.1, 0.5, 60.0, 0.3
@@ -113,8 +113,8 @@ def fits(declared: tuple[Platform, list[Path]]) -> dict[tuple[str, ...], FittedS
             *((s.platform, s.keys, s.provides, s.starts) for s in rebuilt),
         ):
             model = model_of(there)
-            task = task_for(there, model, logs, logs, (), executor, lambda text: None)
-            found[keys] = begin_structure(keys, provides, task, starts, {}).finished().fitted
+            problem = problem_for(there, model, logs, logs, (), executor, lambda text: None)
+            found[keys] = begin_structure(keys, provides, problem, starts, {}).finished().fitted
         yield found
 
 
@@ -151,7 +151,7 @@ def test_runs_of_one_model_are_parted_as_those_of_another(
     declared: tuple[Platform, list[Path]],
     fits: dict[tuple[str, ...], FittedStructure],
 ) -> None:
-    rigid, shaft = fits[()].task, fits["shaft_compliance@pan",].task
+    rigid, shaft = fits[()].problem, fits["shaft_compliance@pan",].problem
     pattern = cut(rigid.model, rigid.whole, 1.0)
     found = parted_like(shaft.model, shaft.whole, pattern)
     assert [run.name for run in found] == [run.name for run in pattern]
@@ -171,8 +171,8 @@ def test_a_structure_goes_on_from_the_values_of_one_that_contains_it_and_keeps_w
     true = {"k_shaft_pan": STIFFNESS, "d_shaft_pan": DAMPING, "J_pan": J_LOAD, "b_pan": DRAG}
     with workers() as executor:
         model = model_of(shaft.platform)
-        task = task_for(shaft.platform, model, logs, logs, (), executor, lambda text: None)
-        begun = begin_structure(shaft.keys, shaft.provides, task, (stiff,), {})
+        problem = problem_for(shaft.platform, model, logs, logs, (), executor, lambda text: None)
+        begun = begin_structure(shaft.keys, shaft.provides, problem, (stiff,), {})
         led = begun.from_values(true)
         kept = led.from_values(stiff)
         assert led.fitted.is_noise_alone

@@ -21,8 +21,8 @@ def test_a_torque_with_its_sign_turned_is_said(
         run = log(seed, stiffness)
         return replace(run, inputs=sign * run.inputs)
 
-    with table_of(tmp_path, logged) as task:
-        task, declared = fit_declared(task, propose(task))
-        found = inverted_inputs(task, declared)
+    with table_of(tmp_path, logged) as problem:
+        problem, declared = fit_declared(problem, propose(problem))
+        found = inverted_inputs(problem, declared)
     assert len(found) == (1 if sign < 0.0 else 0)
     assert all("sign of 'tau_pan' inverted" in text for text in found)

@@ -10,6 +10,7 @@ from scipy import stats
 from scipy.signal import lfilter
 
 from ptp_symbolic.numeric.diagnose.confirm import ambiguous_value
+from ptp_symbolic.numeric.diagnose.fitted_model import FittedModel
 from ptp_symbolic.numeric.diagnose.gain import (
     chance_of_larger,
     held_out_gain,
@@ -17,14 +18,13 @@ from ptp_symbolic.numeric.diagnose.gain import (
     is_validated,
 )
 from ptp_symbolic.numeric.diagnose.noise_floor import (
-    Carried,
     NoiseFloor,
+    PropagatedNoise,
     is_within_noise_of_inputs,
     leaves_noise_alone,
     noise_floor_of,
 )
 from ptp_symbolic.numeric.diagnose.stepwise import Step
-from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.diagnose.verdict import (
     EXPLAINED,
     NOTHING_MISSING,
@@ -45,26 +45,26 @@ WAVE = np.where(np.arange(400) % 2, 1.0, -1.0)
 EFFECT = cast(Any, object())
 
 
-def floor(carried: float = 0.0) -> NoiseFloor:
+def floor(propagated: float = 0.0) -> NoiseFloor:
     one = np.ones(1)
-    return NoiseFloor(one, one, Carried(*[carried * one] * 3))
+    return NoiseFloor(one, one, PropagatedNoise(*[propagated * one] * 3))
 
 
-def quiet(after: Fit, trained: Fit, carried: float = 0.0, left: Floats | None = None) -> bool:
+def quiet(after: Fit, trained: Fit, propagated: float = 0.0, left: Floats | None = None) -> bool:
     """Whether `after` is, by what it has `left` [runs, ny] (default: as no value is free)."""
     left = mean_squares(after.evaluations, after.runs) if left is None else left
-    return is_noise_alone(left, sizes(after.runs), floor(carried), trained)
+    return is_noise_alone(left, sizes(after.runs), floor(propagated), trained)
 
 
 def word(
-    left: float, held_out: float, named: bool, carried: float = 0.0, group: tuple[str, ...] = ()
+    left: float, held_out: float, named: bool, propagated: float = 0.0, group: tuple[str, ...] = ()
 ) -> str:
     """The word where training runs leave `left` times their noise and validation runs `held_out`,
-    whose inputs carry `carried` there.
+    whose inputs carry `propagated` there.
     """
-    trial = Trial((EFFECT,) if named else (), finished([left * WAVE] * 3))
+    trial = FittedModel((EFFECT,) if named else (), finished([left * WAVE] * 3))
     after = finished([held_out * WAVE] * 2)
-    at_noise = quiet(after, trial.fit, carried) and leaves_noise_alone(trial, floor())
+    at_noise = quiet(after, trial.fit, propagated) and leaves_noise_alone(trial, floor())
     return word_of(trial, {"effect": group} if named else {}, at_noise)
 
 
@@ -86,21 +86,21 @@ def test_all_runs_must_be_at_their_floor(
 
 def test_validation_runs_may_leave_what_their_own_inputs_carry_there() -> None:
     assert word(1.0, 2.0, named=False) == UNEXPLAINED
-    assert word(1.0, 2.0, named=False, carried=np.sqrt(3.0)) == NOTHING_MISSING
-    assert word(2.0, 1.0, named=False, carried=np.sqrt(3.0)) == UNEXPLAINED
+    assert word(1.0, 2.0, named=False, propagated=np.sqrt(3.0)) == NOTHING_MISSING
+    assert word(2.0, 1.0, named=False, propagated=np.sqrt(3.0)) == UNEXPLAINED
 
 
 @pytest.mark.parametrize(
-    ("left", "carried", "hidden"), [(1.5, 1.2, True), (2.0, 1.2, False), (1.2, 0.8, False)]
+    ("left", "propagated", "hidden"), [(1.5, 1.2, True), (2.0, 1.2, False), (1.2, 0.8, False)]
 )
 def test_what_the_noise_of_the_inputs_leaves_is_no_lack(
-    left: float, carried: float, hidden: bool
+    left: float, propagated: float, hidden: bool
 ) -> None:
     """The square root of 1 + 1.2^2 is 1.56; where the signals' own noise is the larger part, blocks
     of time tell.
     """
-    trial = Trial((), finished([left * WAVE] * 3))
-    assert is_within_noise_of_inputs(trial, floor(carried)) is hidden
+    trial = FittedModel((), finished([left * WAVE] * 3))
+    assert is_within_noise_of_inputs(trial, floor(propagated)) is hidden
 
 
 @pytest.mark.parametrize("white", [False, True])
@@ -111,10 +111,10 @@ def test_slow_noise_is_noise_unless_it_is_known_to_be_white(white: bool) -> None
         rng.standard_normal(4000) + 3.0 * lfilter([np.sqrt(1.0 - 0.95**2)], [1.0, -0.95], slow)
         for slow in rng.standard_normal((3, 4000))
     ]
-    trial = Trial((), finished(series))
+    trial = FittedModel((), finished(series))
     runs = trial.fit.runs
-    task = SimpleNamespace(declared_noise=(), train=runs, every_sample=runs, white=white)
-    found = noise_floor_of(cast(Any, task), trial, Carried(*[np.zeros(1)] * 3))
+    problem = SimpleNamespace(declared_noise=(), train=runs, every_sample=runs, white=white)
+    found = noise_floor_of(cast(Any, problem), trial, PropagatedNoise(*[np.zeros(1)] * 3))
     assert leaves_noise_alone(trial, found) is not white
     assert found.level[0] == pytest.approx(1.0 if white else np.sqrt(10.0), rel=0.2)
 
@@ -134,9 +134,9 @@ def test_slow_noise_goes_on_while_the_model_rests(goes_on: bool) -> None:
     fit = finished(series)
     shown = [(signal + part)[:, None] for part in series]
     runs = tuple(replace(r, measured=m) for r, m in zip(fit.runs, shown, strict=True))
-    task = SimpleNamespace(declared_noise=(), train=runs, every_sample=runs, white=False)
-    trial = Trial((), replace(fit, runs=runs))
-    found = noise_floor_of(cast(Any, task), trial, Carried(*[np.zeros(1)] * 3))
+    problem = SimpleNamespace(declared_noise=(), train=runs, every_sample=runs, white=False)
+    trial = FittedModel((), replace(fit, runs=runs))
+    found = noise_floor_of(cast(Any, problem), trial, PropagatedNoise(*[np.zeros(1)] * 3))
     assert leaves_noise_alone(trial, found) is goes_on
 
 
@@ -217,7 +217,7 @@ def test_windows_are_held_to_the_usual_noise_and_not_to_the_most_that_may_be() -
         np.ones(1),
     )
     left = mean_squares(after.evaluations, after.runs)
-    wide = NoiseFloor(one, 1.9 * one, Carried(*[0.0 * one] * 3))
+    wide = NoiseFloor(one, 1.9 * one, PropagatedNoise(*[0.0 * one] * 3))
     assert not is_noise_alone(left, np.full(28, 400), wide, own)
     assert is_noise_alone(left, np.full(28, 400), wide, after)
 
@@ -247,7 +247,7 @@ def test_a_known_value_is_doubted_first(
     left: float, declared_value: bool, group: tuple[str, ...], is_doubtful: bool
 ) -> None:
     """A declared value with look-alikes, where more than noise is left; an effect is kept."""
-    trial = Trial((EFFECT,), finished([left * WAVE] * 3))
+    trial = FittedModel((EFFECT,), finished([left * WAVE] * 3))
     candidate = SimpleNamespace(key="value", is_declared_value=declared_value)
     steps = [cast(Step, SimpleNamespace(candidate=candidate))]
     found = ambiguous_value(trial, steps, {"value": group}, floor())

@@ -7,8 +7,8 @@ import pytest
 from scipy import stats
 from scipy.linalg import expm
 
+from ptp_symbolic.numeric.diagnose.fitted_model import fitted
 from ptp_symbolic.numeric.diagnose.preparation import largest_limit, visible_amounts
-from ptp_symbolic.numeric.diagnose.trial import fitted
 from ptp_symbolic.numeric.identify.least_squares import all_values_at_start
 from tests.diagnose.spring_table import COUNT, PAYLOAD, PERIOD, spring_table
 from tests.identify.curves import Floats
@@ -37,12 +37,12 @@ def test_a_constant_torque_and_free_parameters_against_closed_forms(tmp_path: Pa
     unknowns: found in 95 % of cases where one in twenty is a false alarm, of either sign. Of an
     effect a tenth of the squared error shows, of which noise is the rest.
     """
-    with spring_table(tmp_path) as task:
-        start = fitted(task, (), {**task.fixed, **all_values_at_start(task.free)}, None)
-        found = {(v.effect, v.parameter): v.smallest for v in visible_amounts(task, start)}
+    with spring_table(tmp_path) as problem:
+        start = fitted(problem, (), {**problem.fixed, **all_values_at_start(problem.free)}, None)
+        found = {(v.effect, v.parameter): v.smallest for v in visible_amounts(problem, start)}
         machine = {"J": start.values["J_pan"] + PAYLOAD, "b": start.values["b_pan"], "k": 0.0}
-        torques = [run.held_inputs[:, 0] for run in task.train]
-        sigma = 1.0 / task.train[0].weight[0]
+        torques = [run.held_inputs[:, 0] for run in problem.train]
+        sigma = 1.0 / problem.train[0].weight[0]
     assert sigma == pytest.approx(COUNT / np.sqrt(12.0), rel=0.2)
 
     def column(word: str) -> Floats:

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.models.structures import structures
-from ptp_symbolic.numeric.diagnose.noise_floor import Carried, NoiseFloor
+from ptp_symbolic.numeric.diagnose.fitted_model import fitted
+from ptp_symbolic.numeric.diagnose.noise_floor import NoiseFloor, PropagatedNoise
 from ptp_symbolic.numeric.diagnose.proposals import declared_start
-from ptp_symbolic.numeric.diagnose.trial import fitted
 from ptp_symbolic.platform import ParameterDeclaration, Platform, SignalDeclaration, read_platform
 from ptp_symbolic.workflows.write_up import (
     _bound_hints,
-    _carried_remarks,
     _module_of,
+    _propagated_remarks,
     _tied_remarks,
     _untried_hints,
 )
@@ -52,20 +52,20 @@ def test_a_tensor_that_no_body_has_is_said_and_gives_no_module(
 
 
 @pytest.mark.parametrize(
-    ("noise", "carried", "said"), [(None, 1.5, 1), (None, 0.5, 0), (0.0, 1.5, 0)]
+    ("noise", "propagated", "said"), [(None, 1.5, 1), (None, 0.5, 0), (0.0, 1.5, 0)]
 )
 def test_noise_of_an_input_that_rules_is_said_unless_it_is_declared(
-    noise: float | None, carried: float, said: int
+    noise: float | None, propagated: float, said: int
 ) -> None:
     """A torque that a controller computes from a noisy angle is known exactly."""
     torque = SignalDeclaration("tau_pan", "tau_pan", "N m", "input", noise=noise)
     platform = Platform("arm", "Arm", ("pan",), 9.81, (), (), (torque,))
     one = np.ones(1)
-    floor = NoiseFloor(one, one, Carried(*[carried * one] * 3))
-    found = _carried_remarks(platform, floor)
+    floor = NoiseFloor(one, one, PropagatedNoise(*[propagated * one] * 3))
+    found = _propagated_remarks(platform, floor)
     assert len(found) == said
     assert all("tau_pan" in text and "noise = 0.0" in text for text in found)
-    assert _carried_remarks(replace(platform, signals=()), floor) == []
+    assert _propagated_remarks(replace(platform, signals=()), floor) == []
 
 
 def test_a_tie_that_may_be_wrong_is_said() -> None:
@@ -80,11 +80,11 @@ def test_a_tie_that_may_be_wrong_is_said() -> None:
 
 def test_a_declared_value_at_the_end_of_its_range_gets_the_entry_to_write(tmp_path: Path) -> None:
     """A payload of 2 kg is looked for up to twice that; it may be twice as far off: up to 6 kg."""
-    with spring_table(tmp_path) as task:
+    with spring_table(tmp_path) as problem:
         platform = read_platform(tmp_path / "table.toml")
-        (mass,) = (c for c in task.candidates if c.key == "declared_value:m_payload")
+        (mass,) = (c for c in problem.candidates if c.key == "declared_value:m_payload")
         ends = [
-            fitted(task, (mass,), declared_start(task) | {"m_payload": kg}, None)
+            fitted(problem, (mass,), declared_start(problem) | {"m_payload": kg}, None)
             for kg in (4.0, 3.9)
         ]
     (said,) = _bound_hints(platform, [ends[0]], {})

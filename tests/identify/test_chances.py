@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from ptp_symbolic.numeric.diagnose.fitted_model import FittedModel
 from ptp_symbolic.numeric.diagnose.gain import p_value
-from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from ptp_symbolic.numeric.identify.intervals import chance_of, chance_of_zero
 from tests.identify.straight import finished
@@ -48,4 +48,4 @@ def test_a_parameter_without_influence_cannot_be_told_from_zero() -> None:
     noise = np.random.default_rng(3).standard_normal(600)
     blind = finished([noise], [np.zeros((600, 1))], None, (free,), {"k": 0.4})
     assert chance_of_zero(blind, {"k": 0.0}) == 1.0
-    assert p_value(Trial((), blind), {"k": 0.0}) == 1.0
+    assert p_value(FittedModel((), blind), {"k": 0.0}) == 1.0

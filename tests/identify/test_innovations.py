@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy import signal, stats
 
+from ptp_symbolic.numeric.diagnose.fitted_model import FittedModel
 from ptp_symbolic.numeric.diagnose.gain import gain, gain_in_innovations
-from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.constants import MATERIAL
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from ptp_symbolic.numeric.identify.noise import innovations, prediction_error_filter
@@ -63,13 +63,13 @@ def test_innovations_are_white_and_begin_when_the_longest_filter_is_full() -> No
     assert abs(stats.pearsonr(white[1:], white[:-1]).statistic) < 0.05
 
 
-def trial(residuals: list[Floats], columns: list[Floats]) -> Trial:
+def trial(residuals: list[Floats], columns: list[Floats]) -> FittedModel:
     """A fit of one parameter that leaves `residuals`, `columns` [k] its derivative."""
     free = [free_parameter("b", 1.0, -9.0, 9.0)]
-    return Trial((), finished(residuals, [-c[:, None] for c in columns], None, free))
+    return FittedModel((), finished(residuals, [-c[:, None] for c in columns], None, free))
 
 
-def drifting(pattern: list[Floats], size: float, seed: int) -> tuple[Trial, Trial]:
+def drifting(pattern: list[Floats], size: float, seed: int) -> tuple[FittedModel, FittedModel]:
     """Runs with `size` times a pattern and a random walk of steps of one; with the pattern fitted
     by least squares, and without.
     """

@@ -79,7 +79,7 @@ def test_every_window_of_a_rattling_drive_is_told_to_its_noise(runs: tuple[Run, 
 
 
 def test_a_window_goes_on_as_the_run_would_have(runs: tuple[Run, ...]) -> None:
-    """Where what is seen is as simulated, the carried start is the state of the whole run."""
+    """Where what is seen is as simulated, the propagated start is the state of the whole run."""
     run = runs[0]
     z = judged((run,)).z[0]
     tight = Tolerance(1e-9, 1e-11)

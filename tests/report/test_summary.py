@@ -10,10 +10,10 @@ import pytest
 
 from ptp_symbolic.numeric.diagnose import summary
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.fitted_model import FittedModel
 from ptp_symbolic.numeric.diagnose.remainder import residual_tests
 from ptp_symbolic.numeric.diagnose.stepwise import Tried
 from ptp_symbolic.numeric.diagnose.summary import curves_of, error_of, sizes_of
-from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.diagnose.verdict import EXPLAINED, NOTHING_MISSING, PARTLY, UNEXPLAINED
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from ptp_symbolic.numeric.identify.intervals import Estimate
@@ -73,11 +73,11 @@ def _fit(
     )
 
 
-def _trial(*candidates: Candidate, value: float = DECLARED, left: float = 1.0) -> Trial:
-    return Trial(candidates, _fit(np.full((20, 2), left * COUNT), value=value))
+def _trial(*candidates: Candidate, value: float = DECLARED, left: float = 1.0) -> FittedModel:
+    return FittedModel(candidates, _fit(np.full((20, 2), left * COUNT), value=value))
 
 
-def _verdict(word: str, final: Trial, **more: Any) -> Any:
+def _verdict(word: str, final: FittedModel, **more: Any) -> Any:
     usual = {
         "confusable": {},
         "closest": None,

@@ -25,6 +25,7 @@ from ptp_symbolic.numeric.diagnose.confirm import (
     is_moved_by_inputs,
     why_unconfirmed,
 )
+from ptp_symbolic.numeric.diagnose.fitted_model import FittedModel, SearchProblem, all_free
 from ptp_symbolic.numeric.diagnose.gain import Gain, compared, simulated_freely
 from ptp_symbolic.numeric.diagnose.proposals import (
     ProposedSets,
@@ -41,7 +42,6 @@ from ptp_symbolic.numeric.diagnose.regression import (
     larger_sets,
 )
 from ptp_symbolic.numeric.diagnose.stepwise import looked_at
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial, all_free
 from ptp_symbolic.numeric.identify.constants import FAR, LARGEST, TRIED
 from ptp_symbolic.numeric.identify.coordinates import slopes, to_search
 from ptp_symbolic.numeric.identify.equation_fit import fit_equations, linearised, robust_scale
@@ -61,16 +61,16 @@ class AlongMotion:
     and `alternatives` are the candidates beside which it gains nothing, and which predict as well.
     """
 
-    trial: Trial
+    trial: FittedModel
     fit: Fit
     gains: Mapping[str, Gain]
     alternatives: Mapping[str, tuple[str, ...]]
 
 
 def extended_along_motion(
-    task: Task,
+    problem: SearchProblem,
     found: ProposedSets,
-    trial: Trial,
+    trial: FittedModel,
     runs: Sequence[Run],
     contradicting: Collection[str] = (),
 ) -> AlongMotion | None:
@@ -83,16 +83,16 @@ def extended_along_motion(
     `contradicts_its_law`). Those whose keys are `contradicting` did not in a smaller set, which may
     have lacked more: they are held to their laws in the extended one.
     """
-    if found.regression is None or len(task.model.contacts):
+    if found.regression is None or len(problem.model.contacts):
         return None
-    space = equation_space(task, found.start, shortest=True)
+    space = equation_space(problem, found.start, shortest=True)
     if space is None:
         return None
     candidates = trial.candidates
-    rows = in_rows_of(task, space, found.start, candidates)
+    rows = in_rows_of(problem, space, found.start, candidates)
     if not set(trial.keys) <= {s.candidate.key for s in rows.signatures}:
         return None
-    motion = _Motion(task, space, rows, found.start, contradicting)
+    motion = _Motion(problem, space, rows, found.start, contradicting)
     while len(candidates) < len(trial.candidates) + LARGEST:
         effects = [
             s for s in larger_sets(rows, candidates) if not any(c.is_declared_value for c in s)
@@ -107,8 +107,10 @@ def extended_along_motion(
     fit = motion.fitted(candidates)
     if not motion.predicts_better(fit, motion.fitted(trial.candidates)):
         return None
-    final = Trial(candidates, replace(simulated_freely(task, runs, fit.values), free=fit.free))
-    if final.fit.failed or not is_moved_by_inputs(task, final):
+    final = FittedModel(
+        candidates, replace(simulated_freely(problem, runs, fit.values), free=fit.free)
+    )
+    if final.fit.failed or not is_moved_by_inputs(problem, final):
         return None
     gains = {c.key: gain for c in candidates if (gain := motion.gain(candidates, c)) is not None}
     return AlongMotion(final, fit, gains, motion.alternatives(candidates))
@@ -121,7 +123,7 @@ class _Motion:
     `extended_along_motion`.
     """
 
-    task: Task
+    problem: SearchProblem
     space: EquationSpace
     rows: Regression
     start: Mapping[str, float]
@@ -141,9 +143,11 @@ class _Motion:
         return self._is_earned(self.gain(candidates, member), member)
 
     def _is_earned(self, found: Gain | None, member: Candidate) -> bool:
-        tests = looked_at(self.task.candidates, [member])
+        tests = looked_at(self.problem.candidates, [member])
         return (
-            found is not None and found.share >= self.task.material and found.is_significant(tests)
+            found is not None
+            and found.share >= self.problem.material
+            and found.is_significant(tests)
         )
 
     def in_simplest_forms(
@@ -174,7 +178,7 @@ class _Motion:
             return False
         return not any(
             contradicts_its_law(
-                self.task,
+                self.problem,
                 self.space,
                 candidates,
                 fit.values,
@@ -200,13 +204,13 @@ class _Motion:
         """A set fitted to the rows, as a fit whose runs are the rows along each run in the order of
         time, those of all equations.
         """
-        task, space = self.task, self.space
-        begun = start_of(task, self.rows, candidates, self.start)
-        free = all_free(task, candidates, begun)
-        values = fit_equations(space, free, begun, POLISH, task.executor)
-        values = possible(task, free, {**begun, **values})
+        problem, space = self.problem, self.space
+        begun = start_of(problem, self.rows, candidates, self.start)
+        free = all_free(problem, candidates, begun)
+        values = fit_equations(space, free, begun, POLISH, problem.executor)
+        values = possible(problem, free, {**begun, **values})
         here = {f.name: values[f.name] for f in free}
-        at = linearised(space, free, values, here, task.executor)
+        at = linearised(space, free, values, here, problem.executor)
         root = np.sqrt(at.weight)
         residual = at.rows * root
         table = at.jacobian * root[:, None] * slopes(free, to_search(free, values))
@@ -218,7 +222,7 @@ class _Motion:
             runs.append(_of_rows(whole, time[own], residual[own]))
             evaluations.append(Evaluation(residual[own], table[own], np.zeros((own.size, 0))))
         cost = float(residual @ residual)
-        return Fit(task.model, tuple(runs), free, values, (), cost, tuple(evaluations))
+        return Fit(problem.model, tuple(runs), free, values, (), cost, tuple(evaluations))
 
     def predicts_better(self, larger: Fit, smaller: Fit) -> bool:
         """Whether the residual torque along the validation runs is materially smaller with the
@@ -226,18 +230,18 @@ class _Motion:
         runs.
         """
         space = equation_space(
-            self.task, self.start, self.task.validate, half_width=self.space.half_width
+            self.problem, self.start, self.problem.validate, half_width=self.space.half_width
         )
         if space is None:
             return False
-        vector = self.task.model.parameter_vector
+        vector = self.problem.model.parameter_vector
         rows = [space.rows(vector(dict(fit.values))) for fit in (larger, smaller)]
         equation, run, time = space.labels()
         scale = robust_scale(rows[0], equation)
         block = block_numbers(run, time)
         squares = [np.minimum((r / scale) ** 2, FAR**2) for r in rows]
         losses = [np.asarray(np.bincount(block, s), np.float64) for s in squares]
-        return compared(losses[0], losses[1]).share >= self.task.material
+        return compared(losses[0], losses[1]).share >= self.problem.material
 
 
 def _of_rows(run: Run, time: FloatArray, residual: FloatArray) -> Run:

@@ -15,6 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate, with_what_needs_it
+from ptp_symbolic.numeric.diagnose.fitted_model import (
+    SHARP,
+    FittedModel,
+    SearchProblem,
+    all_free,
+    tolerance_for,
+)
 from ptp_symbolic.numeric.diagnose.gain import (
     Gain,
     gain,
@@ -46,7 +53,6 @@ from ptp_symbolic.numeric.diagnose.stepwise import (
     simplified,
     step_of,
 )
-from ptp_symbolic.numeric.diagnose.trial import SHARP, Task, Trial, all_free, tolerance_for
 from ptp_symbolic.numeric.identify.blocks import (
     ELSEWHERE,
     SINGULAR,
@@ -240,22 +246,22 @@ def _rows_of(fit: Fit) -> _Rows:
     return _Rows(names, *weighed, np.repeat(source, signals))
 
 
-def is_moved_by_inputs(task: Task, trial: Trial) -> bool:
+def is_moved_by_inputs(problem: SearchProblem, trial: FittedModel) -> bool:
     """Whether the inputs move the fitted model by more than its residual: a model so inert that
     free initial states alone follow the logs explains nothing.
     """
-    changed, left = _without_inputs(task, trial)
+    changed, left = _without_inputs(problem, trial)
     return changed > left
 
 
 @recorded()
-def _without_inputs(task: Task, trial: Trial) -> tuple[float, float]:
+def _without_inputs(problem: SearchProblem, trial: FittedModel) -> tuple[float, float]:
     """Sums of squares: of what the inputs change in the outputs, and of the residual."""
-    p, none = task.model.parameter_vector(trial.values), np.zeros(0, dtype=np.int64)
+    p, none = problem.model.parameter_vector(trial.values), np.zeros(0, dtype=np.int64)
     changed = left = 0.0
     for (run, e), z in zip(trial.fit.pairs(), trial.fit.z, strict=True):
         idle = with_inputs(run, np.zeros_like(run.held_inputs))
-        found = evaluate(task.model, idle, p, z, none, False, tolerance_for(task, SHARP))
+        found = evaluate(problem.model, idle, p, z, none, False, tolerance_for(problem, SHARP))
         if found.failed is None:
             changed += float(np.sum((found.residual - e.residual) ** 2))
             left += float(np.sum(e.residual**2))
@@ -263,7 +269,7 @@ def _without_inputs(task: Task, trial: Trial) -> tuple[float, float]:
 
 
 def contradicts_its_law(
-    task: Task,
+    problem: SearchProblem,
     space: EquationSpace,
     candidates: Sequence[Candidate],
     values: Mapping[str, float],
@@ -280,13 +286,13 @@ def contradicts_its_law(
     exactly. Errors of sensors are no torques, and what acts on currents or temperatures comes to
     the joint through these, late.
     """
-    names = list(task.model.parameter_names)
+    names = list(problem.model.parameter_names)
     elsewhere = space.sensing | space.moving
     if any(elsewhere[names.index(name)] for name in member.names):
         return False
-    free = all_free(task, candidates, values)
-    at = linearised(space, free, values, {f.name: values[f.name] for f in free}, task.executor)
-    without = space.rows(task.model.parameter_vector({**values, **member.vanishing}))
+    free = all_free(problem, candidates, values)
+    at = linearised(space, free, values, {f.name: values[f.name] for f in free}, problem.executor)
+    without = space.rows(problem.model.parameter_vector({**values, **member.vanishing}))
     equation, run, time = space.labels()
     speed = np.full(len(equation), np.nan)
     for axis in range(len(space.layout.angle)):
@@ -327,8 +333,8 @@ class Weakness(NamedTuple):
 
 
 def confirmed(
-    stepwise: StepwiseSearch, trial: Trial, steps: list[Step], refused: Refusals
-) -> tuple[Trial, list[Step], Fit]:
+    stepwise: StepwiseSearch, trial: FittedModel, steps: list[Step], refused: Refusals
+) -> tuple[FittedModel, list[Step], Fit]:
     """The trial without the members that are not confirmed, which are noted in `refused` with the
     reason; its steps, and its fit as the tests need it (see `_examined`).
     """
@@ -348,26 +354,26 @@ def confirmed(
     return trial, steps, fit
 
 
-def _examined(stepwise: StepwiseSearch, trial: Trial) -> Fit:
+def _examined(stepwise: StepwiseSearch, trial: FittedModel) -> Fit:
     """The fit of a trial with finite differences where derivatives miss what these see; where the
     residual exceeds the noise, so that amounts must be known, also with the propagated noise of the
     inputs.
     """
-    task = stepwise.task
-    if leaves_noise_alone(trial, noise_floor_of(task, trial, stepwise.carried)):
-        return with_finite_differences(trial.fit, task.executor)
-    return estimable(trial.fit, task.input_noise, task.executor)
+    problem = stepwise.problem
+    if leaves_noise_alone(trial, noise_floor_of(problem, trial, stepwise.propagated)):
+        return with_finite_differences(trial.fit, problem.executor)
+    return estimable(trial.fit, problem.input_noise, problem.executor)
 
 
-def shortened(stepwise: StepwiseSearch, trial: Trial) -> tuple[Trial, list[Step]]:
+def shortened(stepwise: StepwiseSearch, trial: FittedModel) -> tuple[FittedModel, list[Step]]:
     """A trial that lacks something now, fitted sharply, and what its candidates gain."""
     trial = stepwise.sharpened(trial)
     return trial, [stepwise.step(trial, c) for c in trial.candidates]
 
 
 def smaller_alternative(
-    stepwise: StepwiseSearch, trial: Trial, alternatives: Sequence[Alternative]
-) -> Trial | None:
+    stepwise: StepwiseSearch, trial: FittedModel, alternatives: Sequence[Alternative]
+) -> FittedModel | None:
     """Where the residual of the trial is white noise, one of its `alternatives` without a candidate
     that explains nothing there, if its residual is white noise too; None where there is none.
     """
@@ -375,7 +381,7 @@ def smaller_alternative(
         return None
     for other in alternatives:
         for candidate in other.trial.candidates:
-            if expected_gain(other.trial, candidate.vanishing) < stepwise.task.material:
+            if expected_gain(other.trial, candidate.vanishing) < stepwise.problem.material:
                 smaller = stepwise.without(other.trial, candidate)
                 if stepwise.is_white(smaller) and len(smaller.candidates) < len(trial.candidates):
                     return smaller
@@ -383,7 +389,10 @@ def smaller_alternative(
 
 
 def ambiguous_value(
-    trial: Trial, steps: Sequence[Step], named: Mapping[str, tuple[str, ...]], floor: NoiseFloor
+    trial: FittedModel,
+    steps: Sequence[Step],
+    named: Mapping[str, tuple[str, ...]],
+    floor: NoiseFloor,
 ) -> Step | None:
     """A declared value that has alternatives (`named`), where the residual exceeds the noise; None
     if there is none. It was declared as known: that it is wrong is the answer only where nothing
@@ -395,25 +404,27 @@ def ambiguous_value(
     return next((s for s in known if named[s.candidate.key]), None)
 
 
-def rejected_on_validation(task: Task, trial: Trial, steps: Sequence[Step]) -> Step | None:
+def rejected_on_validation(
+    problem: SearchProblem, trial: FittedModel, steps: Sequence[Step]
+) -> Step | None:
     """The candidate of a set that the validation runs reject most: they are predicted significantly
     better without it, at 5 % over all members; None if there is none.
     """
     if len(steps) < 2:
         return None
-    after = held_out_fit(task, trial)
-    gains = [held_out_gain(held_out_fit(task, s.without), after) for s in steps]
+    after = held_out_fit(problem, trial)
+    gains = [held_out_gain(held_out_fit(problem, s.without), after) for s in steps]
     worst = min(range(len(steps)), key=lambda k: gains[k].chance)
     return steps[worst] if gains[worst].is_significant(len(steps)) else None
 
 
 def simplest_alternative(
     stepwise: StepwiseSearch,
-    chosen: Trial,
+    chosen: FittedModel,
     steps: list[Step],
     chosen_fit: Fit,
     alternatives: list[Alternative],
-) -> tuple[Trial, list[Step], Fit, list[Alternative]]:
+) -> tuple[FittedModel, list[Step], Fit, list[Alternative]]:
     """Of one effect and what predicts as well as it, the one with the fewest parameters, if
     that is confirmed too; with its fit from `_examined`, `chosen_fit` of the first.
     """
@@ -438,14 +449,16 @@ def simplest_alternative(
     )
 
 
-def _off_bounds(stepwise: StepwiseSearch, trial: Trial, fit: Fit) -> Trial | None:
+def _off_bounds(stepwise: StepwiseSearch, trial: FittedModel, fit: Fit) -> FittedModel | None:
     """The trial with a candidate in the fullest form that lacks a parameter which ends at its
     bound; None where none does, or where no form lacks it.
     """
     for candidate in trial.candidates:
         bound = at_bound(fit, candidate)
         kept = {f.name for f in candidate.free if f.name != bound}
-        lacking = [f for f in forms(stepwise.task, candidate) if {p.name for p in f.free} <= kept]
+        lacking = [
+            f for f in forms(stepwise.problem, candidate) if {p.name for p in f.free} <= kept
+        ]
         if bound is not None and lacking:
             fullest = max(lacking, key=lambda form: len(form.free))
             full = stepwise.polished(begun_in_form(stepwise, trial, candidate, fullest))
@@ -454,19 +467,19 @@ def _off_bounds(stepwise: StepwiseSearch, trial: Trial, fit: Fit) -> Trial | Non
 
 
 def _weakness(
-    stepwise: StepwiseSearch, trial: Trial, steps: list[Step], fit: Fit
+    stepwise: StepwiseSearch, trial: FittedModel, steps: list[Step], fit: Fit
 ) -> Weakness | None:
     """The candidate of a trial that gains least of those that are not confirmed, and why not; None
     where all are. What is known of the others may change once it is out.
     """
-    floor = noise_floor_of(stepwise.task, trial, stepwise.carried)
+    floor = noise_floor_of(stepwise.problem, trial, stepwise.propagated)
     quiet = leaves_noise_alone(trial, floor)
-    is_within_input_noise = replace(floor, carried=stepwise.input_noise_for(trial))
+    is_within_input_noise = replace(floor, propagated=stepwise.input_noise_for(trial))
     by_gain = sorted(steps, key=lambda s: s.gain.share)
-    refit = partial(without_run, stepwise.task, trial)
+    refit = partial(without_run, stepwise.problem, trial)
     for step in by_gain:
         if not stepwise.is_needed(step):
-            return Weakness(step, _too_little(step.gain, stepwise.task.material))
+            return Weakness(step, _too_little(step.gain, stepwise.problem.material))
         if is_within_noise_of_inputs(step.without, is_within_input_noise):
             return Weakness(step, "without it the residual is within the noise of the inputs")
         member = with_what_needs_it(step.candidate, trial.candidates)
@@ -475,21 +488,21 @@ def _weakness(
             return Weakness(step, reason)
         space = stepwise.proposals.space
         if space is not None and contradicts_its_law(
-            stepwise.task, space, trial.candidates, trial.values, step.candidate
+            stepwise.problem, space, trial.candidates, trial.values, step.candidate
         ):
             return Weakness(
                 step, "its torque depends on the speed in another way than its law", breaks_law=True
             )
         if not quiet:
-            doubt = _doubt_beside_residual(stepwise.task, trial, step)
+            doubt = _doubt_beside_residual(stepwise.problem, trial, step)
             if doubt is not None:
                 return Weakness(step, doubt)
-    if not is_moved_by_inputs(stepwise.task, trial):
+    if not is_moved_by_inputs(stepwise.problem, trial):
         return Weakness(by_gain[0], "with it the simulated motion no longer depends on the inputs")
     return None
 
 
-def _doubt_beside_residual(task: Task, trial: Trial, step: Step) -> str | None:
+def _doubt_beside_residual(problem: SearchProblem, trial: FittedModel, step: Step) -> str | None:
     """Why a step cannot be named where the residual exceeds the noise, which a wrong effect may
     imitate: the lower limit of its gain is below one half, or it reduces slow drift alone.
     """
@@ -499,7 +512,7 @@ def _doubt_beside_residual(task: Task, trial: Trial, step: Step) -> str | None:
             f"reduces the sum of squares by {share:.0f} % (lower 95 % limit {least:.0f} %), "
             "too little while the residual exceeds the noise"
         )
-    if gain_in_innovations(trial, step.without).share < task.material:
+    if gain_in_innovations(trial, step.without).share < problem.material:
         return "reduces slow drift alone, which other missing effects can cause as well"
     return None
 

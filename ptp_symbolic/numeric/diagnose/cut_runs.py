@@ -16,14 +16,14 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.data.latency import IntArray, after_lost, parted
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.noise_floor import normalised_residual
-from ptp_symbolic.numeric.diagnose.trial import (
-    Task,
-    Trial,
+from ptp_symbolic.numeric.diagnose.fitted_model import (
+    FittedModel,
+    SearchProblem,
     continued,
     fitted,
     is_same_end,
 )
+from ptp_symbolic.numeric.diagnose.noise_floor import normalised_residual
 from ptp_symbolic.numeric.identify.blocks import MANY_RUNS, weighted_median
 from ptp_symbolic.numeric.identify.constants import (
     CYCLES,
@@ -122,19 +122,19 @@ def _apart(windows: Sequence[Run], length: float) -> int:
     return max(1, int(len(windows) * length / (MANY_RUNS * SHORT)))
 
 
-def growing(task: Task, *, few: bool = False) -> list[Task]:
-    """The task over windows of doubled lengths, up to 2 s, that are shorter than its runs; over all
-    of them, or a `few`, in pairs where one determines the initial state of the other.
+def growing(problem: SearchProblem, *, few: bool = False) -> list[SearchProblem]:
+    """The problem over windows of doubled lengths, up to 2 s, that are shorter than its runs; over
+    all of them, or a `few`, in pairs where one determines the initial state of the other.
     """
-    runs = [thinned(run, samples_within(run, SEARCH_PERIOD)) for run in task.whole]
-    longest = max(float(run.time[-1] - run.time[0]) for run in task.train)
-    every = {x: cut(task.model, runs, x) for x in LENGTHS[:1:-1] if x < longest}
+    runs = [thinned(run, samples_within(run, SEARCH_PERIOD)) for run in problem.whole]
+    longest = max(float(run.time[-1] - run.time[0]) for run in problem.train)
+    every = {x: cut(problem.model, runs, x) for x in LENGTHS[:1:-1] if x < longest}
     windows = [first_windows(w, x, 2.0 * x) if few else w for x, w in every.items()]
-    return [replace(task, train=w, robust_below=np.inf) for w in windows]
+    return [replace(problem, train=w, robust_below=np.inf) for w in windows]
 
 
 def fitted_through(
-    parts: Sequence[Task], candidates: Sequence[Candidate], values: Mapping[str, float]
+    parts: Sequence[SearchProblem], candidates: Sequence[Candidate], values: Mapping[str, float]
 ) -> Mapping[str, float]:
     """Values of a set fitted to the windows of one of `parts` after the other, from `values`."""
     for part in parts:
@@ -143,28 +143,32 @@ def fitted_through(
 
 
 def fitted_to_windows(
-    part: Task, candidates: Sequence[Candidate], values: Mapping[str, float]
-) -> Trial:
+    part: SearchProblem, candidates: Sequence[Candidate], values: Mapping[str, float]
+) -> FittedModel:
     """A set fitted to windows from `values`."""
     trial = settled(part, fitted(part, candidates, values, None), None, brief=True)
     return continued(part, trial, POLISH, secants=WIDE_STEP)
 
 
-def settled(task: Task, trial: Trial, executor: Executor | None, *, brief: bool = False) -> Trial:
+def settled(
+    problem: SearchProblem, trial: FittedModel, executor: Executor | None, *, brief: bool = False
+) -> FittedModel:
     """The trial fitted on until some iterations more change next to nothing, the places of the
     gears estimated anew each time: a window that began on the wrong side of a gap holds the others
     back. `brief` is that of `starts_in_place`.
     """
     for _ in range(CYCLES):
         z = starts_of(trial, executor, brief=brief)
-        better = continued(task, trial, ITERATIONS, executor=executor, z=z)
+        better = continued(problem, trial, ITERATIONS, executor=executor, z=z)
         if is_same_end(better, trial):
             break
         trial = better
     return trial
 
 
-def starts_of(trial: Trial, executor: Executor | None, *, brief: bool = False) -> list[FloatArray]:
+def starts_of(
+    trial: FittedModel, executor: Executor | None, *, brief: bool = False
+) -> list[FloatArray]:
     """Start unknowns, each [nz], of the runs of a trial with what is hidden at their start in place
     (see `starts_in_place`).
     """
@@ -175,64 +179,66 @@ def starts_of(trial: Trial, executor: Executor | None, *, brief: bool = False) -
     )
 
 
-def shares_of_usual(trial: Trial) -> FloatArray:
+def shares_of_usual(trial: FittedModel) -> FloatArray:
     """Mean square residual [n] of every run of a trial, over their median."""
     square = _squares(trial)
     return square / max(_usual_square(trial, square), 1e-300)
 
 
-def _squares(trial: Trial) -> FloatArray:
+def _squares(trial: FittedModel) -> FloatArray:
     fit = trial.fit
     return np.asarray(mean_squares(fit.evaluations, fit.runs).mean(axis=1), dtype=np.float64)
 
 
-def _usual_square(trial: Trial, square: FloatArray) -> float:
+def _usual_square(trial: FittedModel, square: FloatArray) -> float:
     return float(weighted_median(square[:, None], sizes(trial.fit.runs))[0])
 
 
 CUT = "runs that multiply small errors are cut into windows"
 
 
-def in_windows(task: Task, declared: Trial) -> Task:
-    """The task with runs cut into windows where the fitted model amplifies errors until nothing can
-    be predicted (see `cut_where_errors_grow`).
+def in_windows(problem: SearchProblem, declared: FittedModel) -> SearchProblem:
+    """The problem with runs cut into windows where the fitted model amplifies errors until nothing
+    can be predicted (see `cut_where_errors_grow`).
     """
-    model, noise = task.model, task.input_noise
+    model, noise = problem.model, problem.input_noise
     p = model.parameter_vector(declared.values)
-    left = np.sqrt(mean_squares(declared.fit.evaluations, task.train))
+    left = np.sqrt(mean_squares(declared.fit.evaluations, problem.train))
     train = cut_where_errors_grow(
-        model, task.every_sample, declared.fit.z, left, p, noise, task.executor
+        model, problem.every_sample, declared.fit.z, left, p, noise, problem.executor
     )
-    if len(train) == len(task.train):
-        return task
-    fewer = dict(zip(task.every_sample, task.train, strict=True))
-    task.progress(CUT)
-    return replace(task, every_sample=train, train=tuple(fewer.get(run, run) for run in train))
+    if len(train) == len(problem.train):
+        return problem
+    fewer = dict(zip(problem.every_sample, problem.train, strict=True))
+    problem.progress(CUT)
+    return replace(problem, every_sample=train, train=tuple(fewer.get(run, run) for run in train))
 
 
-def validation_in_windows(task: Task, declared: Trial) -> Task:
-    """The task with its validation runs cut as training runs would be, whatever their residual."""
-    model, runs = task.model, task.validate
-    p, starts = model.parameter_vector(declared.values), [run.guess for run in runs]
-    left = np.zeros((len(runs), len(task.train[0].signals)))
-    cut = cut_where_errors_grow(model, runs, starts, left, p, task.input_noise, task.executor)
-    return replace(task, validate=cut)
-
-
-def parted_task(task: Task, trial: Trial) -> Task:
-    """The task with training and validation runs parted where samples are missing, and the signals
-    depend on what the inputs did meanwhile (see `parted_at_lost_samples`), at the values of a
-    trial.
+def validation_in_windows(problem: SearchProblem, declared: FittedModel) -> SearchProblem:
+    """The problem with its validation runs cut as training runs would be, whatever their
+    residual.
     """
-    p = task.model.parameter_vector(trial.values)
+    model, runs = problem.model, problem.validate
+    p, starts = model.parameter_vector(declared.values), [run.guess for run in runs]
+    left = np.zeros((len(runs), len(problem.train[0].signals)))
+    cut = cut_where_errors_grow(model, runs, starts, left, p, problem.input_noise, problem.executor)
+    return replace(problem, validate=cut)
+
+
+def parted_problem(problem: SearchProblem, trial: FittedModel) -> SearchProblem:
+    """The problem with training and validation runs parted where samples are missing, and the
+    signals depend on what the inputs did meanwhile (see `parted_at_lost_samples`), at the values of
+    a trial.
+    """
+    p = problem.model.parameter_vector(trial.values)
 
     def parts_of(run: Run, z: FloatArray) -> tuple[Run, ...]:
-        return parted_at_lost_samples(task.model, run, p)
+        return parted_at_lost_samples(problem.model, run, p)
 
-    return _in_parts(task, trial, parts_of, "runs are parted where samples are missing")
+    return _in_parts(problem, trial, parts_of, "runs are parted where samples are missing")
 
 
-def more_than_halves(short: Trial, trial: Trial) -> bool:
+def more_than_halves(short: FittedModel, trial: FittedModel) -> bool:
     """Whether the mean square residual of a trial in windows is less than half of that over whole
     runs: where it is not, something else is missing, which windows hide.
     """
@@ -240,44 +246,45 @@ def more_than_halves(short: Trial, trial: Trial) -> bool:
     return left <= (1.0 - MOST) * whole
 
 
-def in_windows_of(task: Task, trial: Trial) -> Task:
-    """The task with training and validation runs cut into windows where the model of a trial
+def in_windows_of(problem: SearchProblem, trial: FittedModel) -> SearchProblem:
+    """The problem with training and validation runs cut into windows where the model of a trial
     multiplies an error of the start tenfold (see `window_length`, which is the same test of the
     declared model): a machine that cogs, or leans, runs on from the edge of a valley into one or
     the other, and its fit has an end for each of them.
     """
-    p = task.model.parameter_vector(trial.values)
+    p = problem.model.parameter_vector(trial.values)
 
     def windows_of(run: Run, z: FloatArray) -> tuple[Run, ...]:
-        multiplies = multiplies_errors(task.model, run, p, z)
-        return split_run(task.model, run, SHORT) if multiplies else (run,)
+        multiplies = multiplies_errors(problem.model, run, p, z)
+        return split_run(problem.model, run, SHORT) if multiplies else (run,)
 
-    return _in_parts(task, trial, windows_of, CUT)
+    return _in_parts(problem, trial, windows_of, CUT)
 
 
 def _in_parts(
-    task: Task,
-    trial: Trial,
+    problem: SearchProblem,
+    trial: FittedModel,
     parts_of: Callable[[Run, FloatArray], tuple[Run, ...]],
     said: str,
-) -> Task:
-    """The task with the parts of every run, by the run and its start; as it is where all training
-    runs stay whole, else that is `said`.
+) -> SearchProblem:
+    """The problem with the parts of every run, by the run and its start; as it is where all
+    training runs stay whole, else that is `said`.
     """
-    every = list(task.executor.map(parts_of, task.every_sample, trial.fit.z))
+    every = list(problem.executor.map(parts_of, problem.every_sample, trial.fit.z))
     if all(len(parts) == 1 for parts in every):
-        return task
-    task.progress(said)
+        return problem
+    problem.progress(said)
     fewer = [
-        (run,) if len(parts) == 1 else parts for run, parts in zip(task.train, every, strict=True)
+        (run,) if len(parts) == 1 else parts
+        for run, parts in zip(problem.train, every, strict=True)
     ]
-    starts = [run.guess for run in task.validate]
-    validate = task.executor.map(parts_of, task.validate, starts)
+    starts = [run.guess for run in problem.validate]
+    validate = problem.executor.map(parts_of, problem.validate, starts)
     train = tuple(part for parts in fewer for part in parts)
     return replace(
-        task,
+        problem,
         every_sample=tuple(part for parts in every for part in parts),
         train=train,
-        few=task.few if task.windows else spread_over(train, SHORT),
+        few=problem.few if problem.windows else spread_over(train, SHORT),
         validate=tuple(part for parts in validate for part in parts),
     )

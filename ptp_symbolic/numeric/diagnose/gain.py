@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from ptp_symbolic.numeric.diagnose.noise_floor import NoiseFloor
-from ptp_symbolic.numeric.diagnose.trial import (
+from ptp_symbolic.numeric.diagnose.fitted_model import (
     SHARP,
-    Task,
-    Trial,
+    FittedModel,
+    SearchProblem,
     tolerance_for,
 )
+from ptp_symbolic.numeric.diagnose.noise_floor import NoiseFloor
 from ptp_symbolic.numeric.identify.blocks import (
     ELSEWHERE,
     MANY_RUNS,
@@ -104,7 +104,7 @@ class Gain:
 
 
 @recorded(Gain)
-def gain(larger: Trial, smaller: Trial) -> Gain:
+def gain(larger: FittedModel, smaller: FittedModel) -> Gain:
     """The predictive gain of `larger` over `smaller`, both fitted to the same runs; none where a
     derivative of either is no number, for its motion multiplies any error without bounds.
     """
@@ -115,7 +115,7 @@ def gain(larger: Trial, smaller: Trial) -> Gain:
 
 
 @recorded(Gain)
-def gain_in_innovations(larger: Trial, smaller: Trial) -> Gain:
+def gain_in_innovations(larger: FittedModel, smaller: FittedModel) -> Gain:
     """The same where the residual of `larger` is autocorrelated: in its innovations, each model one
     step of generalized least squares from its fit.
     """
@@ -201,7 +201,7 @@ def compared(larger: FloatArray, smaller: FloatArray) -> Gain:
 
 
 @recorded()
-def p_value(trial: Trial, zero: Mapping[str, float]) -> float:
+def p_value(trial: FittedModel, zero: Mapping[str, float]) -> float:
     """Probability that parameters this far from `zero`, or further, are found where they are zero.
 
     By their search coordinates, with the covariance of a jackknife over blocks of time under the
@@ -290,10 +290,10 @@ def left_by_best_values(
         square = np.array([np.mean(r**2) for r in left])
         usual = max(float(weighted_median(square[:, None], size)[0]), 1.0)
         weighted = list(zip(huber_root(square, usual), scaled, strict=True))
-        columns = np.vstack([root * carried for root, (_, carried) in weighted])
+        columns = np.vstack([root * propagated for root, (_, propagated) in weighted])
         target = -np.concatenate([root * residual for root, (residual, _) in weighted])
         shift = closest_in_ball(columns, target)
-        left = [residual + carried @ shift for residual, carried in scaled]
+        left = [residual + propagated @ shift for residual, propagated in scaled]
     tables = [r.reshape(run.measured.shape) for r, run in zip(left, after.runs, strict=True)]
     return np.array([np.mean((table * level) ** 2, axis=0) for table in tables])
 
@@ -331,15 +331,17 @@ def chance_of_larger(ours: FloatArray, theirs: FloatArray) -> float:
     return (1.0 + np.count_nonzero(sums >= ranks[: len(ours)].sum())) / (1.0 + count)
 
 
-def held_out_fit(task: Task, trial: Trial) -> Fit:
+def held_out_fit(problem: SearchProblem, trial: FittedModel) -> Fit:
     """The validation runs by the model of a trial, nothing but their start unknowns fitted."""
-    return simulated_freely(task, task.validate, trial.values)
+    return simulated_freely(problem, problem.validate, trial.values)
 
 
-def simulated_freely(task: Task, runs: Sequence[Run], values: Mapping[str, float]) -> Fit:
+def simulated_freely(
+    problem: SearchProblem, runs: Sequence[Run], values: Mapping[str, float]
+) -> Fit:
     """Runs simulated with `values` of all parameters, nothing but their start unknowns fitted."""
-    effort = Effort(POLISH, MATERIAL * ROUGH, tolerance_for(task, SHARP))
-    return fit_parameters(task.model, runs, (), dict(values), None, effort, task.executor)
+    effort = Effort(POLISH, MATERIAL * ROUGH, tolerance_for(problem, SHARP))
+    return fit_parameters(problem.model, runs, (), dict(values), None, effort, problem.executor)
 
 
 def held_out_gain(after: Fit, before: Fit) -> Gain:

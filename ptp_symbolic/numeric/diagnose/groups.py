@@ -19,6 +19,14 @@ from ptp_symbolic.numeric.diagnose.candidates import (
     with_what_needs_it,
     without_member,
 )
+from ptp_symbolic.numeric.diagnose.fitted_model import (
+    FittedModel,
+    SearchProblem,
+    fitted,
+    halving,
+    keys_of,
+    ranked,
+)
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain
 from ptp_symbolic.numeric.diagnose.noise_floor import (
     NoiseFloor,
@@ -39,14 +47,6 @@ from ptp_symbolic.numeric.diagnose.responses import (
 )
 from ptp_symbolic.numeric.diagnose.signatures import Signature
 from ptp_symbolic.numeric.diagnose.stepwise import StepwiseSearch
-from ptp_symbolic.numeric.diagnose.trial import (
-    Task,
-    Trial,
-    fitted,
-    halving,
-    keys_of,
-    ranked,
-)
 from ptp_symbolic.numeric.identify.constants import MATERIAL, MOST, REACH
 from ptp_symbolic.numeric.identify.coordinates import to_search, to_values
 from ptp_symbolic.numeric.identify.evidence import recorded
@@ -64,7 +64,7 @@ class Alternative:
     residual of this one is within the propagated noise of the inputs.
     """
 
-    trial: Trial
+    trial: FittedModel
     gain: Gain
     is_within_input_noise: bool = False
 
@@ -78,7 +78,9 @@ class Similarity:
     values: dict[str, float]
 
 
-def refitted_alternatives(stepwise: StepwiseSearch, chosen: Trial, fit: Fit) -> list[Alternative]:
+def refitted_alternatives(
+    stepwise: StepwiseSearch, chosen: FittedModel, fit: Fit
+) -> list[Alternative]:
     """Sets as large as the chosen one that these logs do not refute (`not_refuted`), those that the
     search has started already among them. `fit` is the fit of the chosen one, from
     `with_finite_differences`.
@@ -87,42 +89,44 @@ def refitted_alternatives(stepwise: StepwiseSearch, chosen: Trial, fit: Fit) -> 
     is fitted to its end where these come near the noise floor, and where the residual of the chosen
     one exceeds the noise, however far it is till then.
     """
-    task = stepwise.task
+    problem = stepwise.problem
     near = [t for t in ranked(stepwise.tried.others) if _comes_near(t, chosen)]
     tried = {t.keys for t in near}
-    begun: list[Trial] = []
+    begun: list[FittedModel] = []
     resembling: set[tuple[str, ...]] = set()
     for member in chosen.candidates:
         kept = without_member(chosen.candidates, member)
-        instead = partial(with_what_it_brings, kept, candidates=task.candidates)
-        similar = look_alikes(task, chosen, fit, with_what_needs_it(member, chosen.candidates))
+        instead = partial(with_what_it_brings, kept, candidates=problem.candidates)
+        similar = look_alikes(problem, chosen, fit, with_what_needs_it(member, chosen.candidates))
         begun += [
-            fitted(task, instead(s.candidate), s.values, chosen.fit.z, 0, fit) for s in similar
+            fitted(problem, instead(s.candidate), s.values, chosen.fit.z, 0, fit) for s in similar
         ]
         along = alike_along_motion(stepwise.proposals, chosen, member)
         wanted = {c.key: c for c in (*(s.candidate for s in similar), *along)}
         for candidate in wanted.values():
             if keys_of(instead(candidate)) not in tried:
-                begun += in_place(task, stepwise.proposals, instead(candidate), chosen)
+                begun += in_place(problem, stepwise.proposals, instead(candidate), chosen)
         resembling |= {keys_of(instead(s.candidate)) for s in similar}
     if begun:
-        task.progress(f"refitting {len(begun)} sets that resemble the chosen one")
-    trials = [*halving(task, begun, len(begun)), *near]
-    best: dict[tuple[str, ...], Trial] = {}
+        problem.progress(f"refitting {len(begun)} sets that resemble the chosen one")
+    trials = [*halving(problem, begun, len(begun)), *near]
+    best: dict[tuple[str, ...], FittedModel] = {}
     for trial in ranked(trials):
         best.setdefault(trial.keys, trial)
     found = []
     for trial in best.values():
         resembles = trial.keys in resembling
         if resembles and not stepwise.is_white(chosen):
-            found.append(restarted_fit(task, stepwise.polished(trial), stepwise.carried))
-        elif gain(chosen, trial).share < 1.0 - task.material or (
+            found.append(restarted_fit(problem, stepwise.polished(trial), stepwise.propagated))
+        elif gain(chosen, trial).share < 1.0 - problem.material or (
             resembles and is_near_noise_floor(trial)
         ):
             found.append(stepwise.polished(trial))
     compared = [Alternative(trial, gain(chosen, trial)) for trial in found]
     return not_refuted(
-        compared, noise_floor_of(task, chosen, stepwise.input_noise_for(chosen)), task.material
+        compared,
+        noise_floor_of(problem, chosen, stepwise.input_noise_for(chosen)),
+        problem.material,
     )
 
 
@@ -141,7 +145,7 @@ def not_refuted(
     ]
 
 
-def _comes_near(other: Trial, chosen: Trial) -> bool:
+def _comes_near(other: FittedModel, chosen: FittedModel) -> bool:
     """Whether another set as large as the chosen one predicts nearly as well, as far as it was
     fitted.
     """
@@ -158,8 +162,8 @@ def is_materially_better(earned: Gain, tests: int, material: float) -> bool:
 
 
 def better_alternative(
-    chosen: Trial, found: Sequence[Alternative], material: float
-) -> Trial | None:
+    chosen: FittedModel, found: Sequence[Alternative], material: float
+) -> FittedModel | None:
     """The best of the alternatives that predict significantly better than the chosen set, by a
     `material` share; None if none does.
     """
@@ -170,7 +174,9 @@ def better_alternative(
     return ranked(better)[0] if better else None
 
 
-def alike_along_motion(found: ProposedSets, chosen: Trial, member: Candidate) -> list[Candidate]:
+def alike_along_motion(
+    found: ProposedSets, chosen: FittedModel, member: Candidate
+) -> list[Candidate]:
     """Candidates whose signature correlates above 1 - MATERIAL with that of `member`, as it is
     fitted, apart from what the declared parameters and the other members can follow; best first.
     """
@@ -201,7 +207,7 @@ def alike_along_motion(found: ProposedSets, chosen: Trial, member: Candidate) ->
     return [c for _, c in sorted(correlation.values(), key=lambda pair: -pair[0])]
 
 
-def _nearest(signature: Signature, chosen: Trial) -> tuple[FloatArray, ...]:
+def _nearest(signature: Signature, chosen: FittedModel) -> tuple[FloatArray, ...]:
     """The slopes at the shaping values nearest to the fitted ones."""
     here = chosen.values
     far = [
@@ -211,7 +217,7 @@ def _nearest(signature: Signature, chosen: Trial) -> tuple[FloatArray, ...]:
     return signature.slopes[int(np.argmin(far))]
 
 
-def confusable(chosen: Trial, found: Sequence[Alternative]) -> dict[str, tuple[str, ...]]:
+def confusable(chosen: FittedModel, found: Sequence[Alternative]) -> dict[str, tuple[str, ...]]:
     """For every key of the chosen set the keys of its alternatives."""
     named: dict[str, set[str]] = {key: set() for key in chosen.keys}
     for other in found:
@@ -220,22 +226,24 @@ def confusable(chosen: Trial, found: Sequence[Alternative]) -> dict[str, tuple[s
     return {key: tuple(sorted(keys)) for key, keys in named.items()}
 
 
-def look_alikes(task: Task, trial: Trial, fit: Fit, member: Candidate) -> list[Similarity]:
+def look_alikes(
+    problem: SearchProblem, trial: FittedModel, fit: Fit, member: Candidate
+) -> list[Similarity]:
     """Candidates whose response has a canonical correlation above 1 - MATERIAL with the effect of
     `member` at `fit`, best first.
     """
-    full = {c.key: c for c in sorted(task.candidates, key=lambda c: len(c.free))}
+    full = {c.key: c for c in sorted(problem.candidates, key=lambda c: len(c.free))}
     wanted = [c for c in full.values() if c.key not in trial.keys]
-    by_key = {c.key: c for c in reversed(task.candidates)}
+    by_key = {c.key: c for c in reversed(problem.candidates)}
     brings = [by_key[key] for c in wanted for key in c.brings if key in by_key]
-    found = _look_alikes(task, trial, fit, member, wanted, brings)
+    found = _look_alikes(problem, trial, fit, member, wanted, brings)
     return [Similarity(wanted[k], correlation, values) for k, correlation, values in found]
 
 
 @recorded()
 def _look_alikes(
-    task: Task,
-    trial: Trial,
+    problem: SearchProblem,
+    trial: FittedModel,
     fit: Fit,
     member: Candidate,
     wanted: Sequence[Candidate],
@@ -264,7 +272,7 @@ def _look_alikes(
     ) -> tuple[int, float, dict[str, float]] | None:
         number, shape = pair
         candidate = wanted[number]
-        found = response_columns(task, trial, candidate, shape, most)
+        found = response_columns(problem, trial, candidate, shape, most)
         if found is None:
             return None
         correlation = canonical_correlation(target, projected_off(found.table, away))
@@ -274,7 +282,7 @@ def _look_alikes(
         return number, correlation, values | dict(found.base)
 
     best: dict[int, tuple[int, float, dict[str, float]]] = {}
-    jobs = [s for s in task.executor.map(compare, every) if s is not None]
+    jobs = [s for s in problem.executor.map(compare, every) if s is not None]
     for s in sorted(jobs, key=lambda s: -s[1]):
         best.setdefault(s[0], s)
     return list(best.values())

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import signal, stats
 
+from ptp_symbolic.numeric.diagnose.fitted_model import FittedModel
 from ptp_symbolic.numeric.diagnose.remainder import Looked, change_of, long_run, trimmed
 from ptp_symbolic.numeric.diagnose.responses import projected_off
-from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.constants import (
     CYCLES,
     FAR,
@@ -123,7 +123,7 @@ class Ceiling:
     exceeds: float
 
 
-def further_hints(trial: Trial, space: EquationSpace | None) -> list[str]:
+def further_hints(trial: FittedModel, space: EquationSpace | None) -> list[str]:
     """All observations of this module on what a trial leaves, as sentences with units: of the rows
     of its equation `space` (None: of its outputs), and of its simulated angles.
     """
@@ -140,7 +140,7 @@ def further_hints(trial: Trial, space: EquationSpace | None) -> list[str]:
     return found
 
 
-def _said_of_rows(trial: Trial, space: EquationSpace) -> list[str]:
+def _said_of_rows(trial: FittedModel, space: EquationSpace) -> list[str]:
     """A change at one time and ceilings of inputs, by the rows of every axis."""
     model = space.model
     p = model.parameter_vector(trial.values)
@@ -172,7 +172,7 @@ def _said_of_rows(trial: Trial, space: EquationSpace) -> list[str]:
     return found
 
 
-def _said_of_outputs(trial: Trial) -> list[str]:
+def _said_of_outputs(trial: FittedModel) -> list[str]:
     """A change at one time, by the outputs of a machine without rows."""
     runs, found = trial.fit.pairs(), []
     for column, name in enumerate(trial.fit.runs[0].signals):
@@ -215,7 +215,7 @@ def _said_change(change: Change | None, what: str, unit: str, names: Sequence[st
     ]
 
 
-def _said_of_angle(trial: Trial, column: int, axis: str) -> list[str]:
+def _said_of_angle(trial: FittedModel, column: int, axis: str) -> list[str]:
     """A resonance and lost motion, by one simulated angle."""
     runs = [
         Recorded(

@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from scipy import special, stats
 from scipy.optimize import brentq
 
-from ptp_symbolic.numeric.diagnose.trial import (
+from ptp_symbolic.numeric.diagnose.fitted_model import (
     SHARP,
-    Task,
-    Trial,
+    FittedModel,
+    SearchProblem,
     continued,
     fitted,
     simulated,
@@ -70,14 +70,14 @@ FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Carried:
+class PropagatedNoise:
     """The propagated noise of the inputs in every signal [ny], over the noise of that: its median
-    root mean square (`usual`), and those that are exceeded at FALSE_ALARM (`seldom`) and at
-    TEST_ALARM (`most`; see `bound_of`).
+    root mean square, and those that are exceeded at FALSE_ALARM (`rare`) and at TEST_ALARM (`most`;
+    see `bound_of`).
     """
 
-    usual: FloatArray
-    seldom: FloatArray
+    median: FloatArray
+    rare: FloatArray
     most: FloatArray
 
 
@@ -101,22 +101,22 @@ def _robust_mean(squares: FloatArray, size: FloatArray) -> FloatArray:
     return np.asarray(size @ bounded / size.sum())
 
 
-@recorded(Carried)
-def carried_noise(task: Task, fit: Fit) -> Carried:
+@recorded(PropagatedNoise)
+def propagated_input_noise(problem: SearchProblem, fit: Fit) -> PropagatedNoise:
     """The propagated noise of the inputs, by the model of `fit`.
 
     All runs are replayed some times, and what that adds to the noise of their signals is summed up
     as a residual is. A replay that cannot be simulated counts as the median of its run, and a run
     without any is left out.
     """
-    p = task.model.parameter_vector(dict(fit.values))
-    runs = task.every_sample if is_thinned(task, fit) else fit.runs
-    every = replayed_squares(task.model, runs, fit.z, p, task.input_noise, task.executor)
+    p = problem.model.parameter_vector(dict(fit.values))
+    runs = problem.every_sample if is_thinned(problem, fit) else fit.runs
+    every = replayed_squares(problem.model, runs, fit.z, p, problem.input_noise, problem.executor)
     simulated, size = _simulated(every, sizes(runs))
     left = np.array([_robust_mean(1.0 + squares, size) - 1.0 for squares in simulated])
     left = np.maximum(left, NOTHING)
     bounds = [[bound_of(c, chance) for c in left.T] for chance in (FALSE_ALARM, TEST_ALARM)]
-    return Carried(np.sqrt(np.median(left, axis=0)), *np.sqrt(bounds))
+    return PropagatedNoise(np.sqrt(np.median(left, axis=0)), *np.sqrt(bounds))
 
 
 def _simulated(squares: FloatArray, size: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -151,19 +151,19 @@ def bound_of(squares: FloatArray, chance: float) -> float:
     return float(scale * stats.f.isf(chance, freedom, len(squares) * freedom))
 
 
-def with_fewer_samples(task: Task, values: Mapping[str, float]) -> Task:
-    """The task with training runs of fewer samples, as far as these change none of their signals by
-    more than LITTLE of the squared noise, as the model simulates them with `values` of all
+def with_fewer_samples(problem: SearchProblem, values: Mapping[str, float]) -> SearchProblem:
+    """The problem with training runs of fewer samples, as far as these change none of their signals
+    by more than LITTLE of the squared noise, as the model simulates them with `values` of all
     parameters. Inputs between two samples count by their average: a current that follows them at
     once shows the difference, and keeps its samples.
     """
-    p, tolerance = task.model.parameter_vector(dict(values)), tolerance_for(task, ROUGH)
+    p, tolerance = problem.model.parameter_vector(dict(values)), tolerance_for(problem, ROUGH)
 
     def fewer(run: Run) -> Run:
-        every = _samples_apart(task.model, run, p, tolerance)
+        every = _samples_apart(problem.model, run, p, tolerance)
         return run if every == 1 else thinned(run, every)
 
-    return replace(task, train=tuple(task.executor.map(fewer, task.every_sample)))
+    return replace(problem, train=tuple(problem.executor.map(fewer, problem.every_sample)))
 
 
 @recorded()
@@ -187,28 +187,30 @@ def _samples_apart(model: Model, run: Run, p: FloatArray, tolerance: Tolerance) 
     return 1
 
 
-def is_thinned(task: Task, fit: Fit) -> bool:
+def is_thinned(problem: SearchProblem, fit: Fit) -> bool:
     """Whether `fit` is of training runs with fewer samples than they have."""
-    return fit.runs == task.train and task.train != task.every_sample
+    return fit.runs == problem.train and problem.train != problem.every_sample
 
 
-def with_every_residual(task: Task, fit: Fit) -> Fit:
+def with_every_residual(problem: SearchProblem, fit: Fit) -> Fit:
     """`fit` with the residuals of every sample of the training runs, without Jacobians."""
-    if not is_thinned(task, fit):
+    if not is_thinned(problem, fit):
         return fit
-    whole = replace(fit, runs=task.every_sample)
-    return replace(whole, evaluations=tuple(simulated(task, whole, {}, task.executor)))
+    whole = replace(fit, runs=problem.every_sample)
+    return replace(whole, evaluations=tuple(simulated(problem, whole, {}, problem.executor)))
 
 
-def fitted_to_every_sample(task: Task, trials: Sequence[Trial]) -> list[Trial]:
+def fitted_to_every_sample(
+    problem: SearchProblem, trials: Sequence[FittedModel]
+) -> list[FittedModel]:
     """Trials of the search fitted on to every sample of the training runs, sharply at last; all of
     them as they are where no run has fewer samples, or where one trial cannot be simulated.
     """
-    whole, run = replace(task, train=task.every_sample), task.executor
+    whole, run = replace(problem, train=problem.every_sample), problem.executor
     begun = [
         fitted(whole, t.candidates, t.values, t.fit.z, executor=run)
         for t in trials
-        if is_thinned(task, t.fit)
+        if is_thinned(problem, t.fit)
     ]
     if len(begun) < len(trials) or any(t.fit.failed for t in begun):
         return list(trials)
@@ -220,51 +222,55 @@ def fitted_to_every_sample(task: Task, trials: Sequence[Trial]) -> list[Trial]:
 class NoiseFloor:
     """The residual of a perfect model in every signal [ny], in units of the rounding and noise in
     its weight: the `noise` of the signal, the `largest` that it may have at 95 % (its
-    autocorrelation is not known), and the noise `carried` there from the inputs.
+    autocorrelation is not known), and the noise `propagated` there from the inputs.
     """
 
     noise: FloatArray
     largest: FloatArray
-    carried: Carried
+    propagated: PropagatedNoise
 
     @property
     def level(self) -> FloatArray:
         """Root mean square [ny] of the residual of a perfect model."""
-        return np.hypot(self.noise, self.carried.usual)
+        return np.hypot(self.noise, self.propagated.median)
 
     @property
     def most(self) -> FloatArray:
         """The largest root mean square [ny] that may be noise."""
-        return np.hypot(self.largest, self.carried.most)
+        return np.hypot(self.largest, self.propagated.most)
 
 
-def noise_floor_of(task: Task, trial: Trial, carried: Carried) -> NoiseFloor:
+def noise_floor_of(
+    problem: SearchProblem, trial: FittedModel, propagated: PropagatedNoise
+) -> NoiseFloor:
     """The noise floor, with the autocorrelation of the residual of `trial`, but no more than the
-    differences of the measured signals and the quietest run allow, and with the noise `carried`
+    differences of the measured signals and the quietest run allow, and with the noise `propagated`
     from the inputs. Where the residual exceeds such noise, where its size varies as that of no
     noise (nor by the inputs), or where its slow part is absent while the model rests, it is model
-    error: the floor is white then, as it is for a task whose noise is.
+    error: the floor is white then, as it is for a problem whose noise is.
     """
     white = np.ones(len(trial.fit.runs[0].signals))
-    if task.white:
-        return NoiseFloor(white, white, carried)
-    floor = NoiseFloor(*_of_its_colour(task, trial.fit, carried), carried)
-    return floor if leaves_noise_alone(trial, floor) else NoiseFloor(white, white, carried)
+    if problem.white:
+        return NoiseFloor(white, white, propagated)
+    floor = NoiseFloor(*_of_its_colour(problem, trial.fit, propagated), propagated)
+    return floor if leaves_noise_alone(trial, floor) else NoiseFloor(white, white, propagated)
 
 
 @recorded()
-def _of_its_colour(task: Task, fit: Fit, carried: Carried) -> tuple[FloatArray, FloatArray]:
+def _of_its_colour(
+    problem: SearchProblem, fit: Fit, propagated: PropagatedNoise
+) -> tuple[FloatArray, FloatArray]:
     """The `noise` and the `largest` of a noise floor [ny], with the autocorrelation of the residual
     of a fit.
     """
-    fit = with_every_residual(task, fit)
+    fit = with_every_residual(problem, fit)
     runs = fit.runs
     rms, most = np.ones(len(runs[0].signals)), np.ones(len(runs[0].signals))
     squares = mean_squares(fit.evaluations, runs)
-    hidden = most_hidden(task)
+    hidden = most_hidden(problem)
     usual = squares <= TUNING**2 * np.maximum(normalised_residual(fit) ** 2, 1.0)
     for column, signal in enumerate(runs[0].signals):
-        if signal not in task.declared_noise:
+        if signal not in problem.declared_noise:
             series = [e.residual.reshape(r.measured.shape)[:, column] for r, e in fit.pairs()]
             measured = [run.measured[:, column] * run.weight[column] for run in runs]
             kept = np.flatnonzero(usual[:, column])
@@ -273,7 +279,7 @@ def _of_its_colour(task: Task, fit: Fit, carried: Carried) -> tuple[FloatArray, 
             doubted = not noise.steady or is_missed_at_rest(
                 parts, [measured[k] - series[k] for k in kept], _slow_part(parts, noise), noise.pole
             )
-            if doubted and np.hypot(1.0, carried.most[column]) <= ABOVE_NOISE:
+            if doubted and np.hypot(1.0, propagated.most[column]) <= ABOVE_NOISE:
                 continue
             by_log = [[series[k] for k in log if usual[k, column]] for log in by_source(runs)]
             quiet = max(1.0, most_in_quietest([parts for parts in by_log if parts]))
@@ -290,12 +296,14 @@ def _slow_part(series: Sequence[FloatArray], noise: Noise) -> float:
     return float(np.sqrt(max(min(noise.rms**2, left) - 1.0, 0.0)))
 
 
-def most_hidden(task: Task) -> FloatArray:
+def most_hidden(problem: SearchProblem) -> FloatArray:
     """The largest root mean square [ny] that noise of any colour may have, over the noise that the
     differences of the signals show; 1 where it is declared.
     """
-    signals = task.train[0].signals
-    return np.array([1.0 if s in task.declared_noise else _with_hidden(POLES[-1]) for s in signals])
+    signals = problem.train[0].signals
+    return np.array(
+        [1.0 if s in problem.declared_noise else _with_hidden(POLES[-1]) for s in signals]
+    )
 
 
 def _with_hidden(pole: float) -> float:
@@ -303,33 +311,35 @@ def _with_hidden(pole: float) -> float:
     return float(np.hypot(1.0, ABOVE_NOISE * hidden_from_differences(pole)))
 
 
-def leaves_white_noise(trial: Trial, carried: Carried) -> bool:
-    """Whether the residual of a trial is within rounding, white noise and the noise `carried` from
-    the inputs; a search goes on where it is not, whatever its autocorrelation.
+def leaves_white_noise(trial: FittedModel, propagated: PropagatedNoise) -> bool:
+    """Whether the residual of a trial is within rounding, white noise and the noise `propagated`
+    from the inputs; a search goes on where it is not, whatever its autocorrelation.
     """
-    return bool(np.all(normalised_residual(trial.fit) <= ABOVE_NOISE * np.hypot(1.0, carried.most)))
+    return bool(
+        np.all(normalised_residual(trial.fit) <= ABOVE_NOISE * np.hypot(1.0, propagated.most))
+    )
 
 
-def leaves_noise_alone(trial: Trial, floor: NoiseFloor) -> bool:
+def leaves_noise_alone(trial: FittedModel, floor: NoiseFloor) -> bool:
     """Whether the residual of a trial is indistinguishable from noise, in all signals."""
     return bool(np.all(normalised_residual(trial.fit) <= ABOVE_NOISE * floor.most))
 
 
-def exceeds_usual_noise(trial: Trial, floor: NoiseFloor) -> bool:
+def exceeds_usual_noise(trial: FittedModel, floor: NoiseFloor) -> bool:
     """Whether the residual of a trial exceeds, in any signal, noise of its autocorrelation with the
     propagated noise of the inputs that is exceeded at FALSE_ALARM.
     """
-    seldom = np.hypot(floor.noise, floor.carried.seldom)
+    seldom = np.hypot(floor.noise, floor.propagated.rare)
     return bool(np.any(normalised_residual(trial.fit) > ABOVE_NOISE * seldom))
 
 
-def is_within_noise_of_inputs(trial: Trial, floor: NoiseFloor) -> bool:
+def is_within_noise_of_inputs(trial: FittedModel, floor: NoiseFloor) -> bool:
     """Whether the residual of a trial is within the usual noise, where that of the inputs,
     propagated, exceeds that of the signals. It lasts for seconds, so that some effect always
     follows a part of it, in every block of time: where the residual is no larger without an effect,
     nothing is missing.
     """
-    most_by_inputs = np.any(floor.carried.usual > floor.noise)
+    most_by_inputs = np.any(floor.propagated.median > floor.noise)
     return bool(
         most_by_inputs and np.all(normalised_residual(trial.fit) <= ABOVE_NOISE * floor.level)
     )

@@ -23,6 +23,7 @@ from ptp_symbolic.numeric.diagnose.candidates import (
     within_reach,
 )
 from ptp_symbolic.numeric.diagnose.cut_runs import first_windows, more_than_halves, spread_over
+from ptp_symbolic.numeric.diagnose.fitted_model import FittedModel, Progress, SearchProblem, fitted
 from ptp_symbolic.numeric.diagnose.proposals import declared_start, equation_space, first_fit
 from ptp_symbolic.numeric.diagnose.refits import is_near_noise_floor
 from ptp_symbolic.numeric.diagnose.responses import (
@@ -30,7 +31,6 @@ from ptp_symbolic.numeric.diagnose.responses import (
     response_columns,
     stacked_jacobian,
 )
-from ptp_symbolic.numeric.diagnose.trial import Progress, Task, Trial, fitted
 from ptp_symbolic.numeric.identify.constants import (
     FALSE_ALARM,
     FORGOTTEN,
@@ -51,7 +51,7 @@ from ptp_symbolic.numeric.runtime.model import Model
 FloatArray = NDArray[np.float64]
 
 
-def task_of(
+def problem_of(
     model: Model,
     train: tuple[Run, ...],
     validate: tuple[Run, ...],
@@ -64,15 +64,15 @@ def task_of(
     executor: Executor,
     progress: Progress,
     allowance: Allowance | None = None,
-) -> Task:
+) -> SearchProblem:
     """All that stays the same through a diagnosis, or through a fit where nothing is `declared`.
 
     `known` are the known values with the most by which each may be off, `declared` the keys of the
     effects that are no candidates, `noises` the declared noise (rms) of every signal in its unit
     (None: not declared), `window` the length in s of the windows (None: as far as the noise of the
-    inputs allows, see `window_length`), `material` that of `Task`, `allowance` what the search may
-    take (None: no limit). Raises InputError for values out
-    of bounds, and for windows of too few samples.
+    inputs allows, see `window_length`), `material` that of `SearchProblem`, `allowance` what the
+    search may take (None: no limit). Raises InputError for values out of bounds, and for windows of
+    too few samples.
     """
     if window is not None:
         _refuse_short(window, train)
@@ -90,7 +90,7 @@ def task_of(
     found = find_candidates(model, declared, known) if declared else ()
     angles = _reached_angles(model, train)
     candidates = tuple(within_reach(c, model, largest, angles) for c in found)
-    return Task(
+    return SearchProblem(
         model,
         train,
         pieces,
@@ -147,15 +147,17 @@ def _finest_angle(runs: Sequence[Run]) -> float:
 DRIVING = ("V", "N m", "N", "A")  # units of inputs that drive an axis
 
 
-def inverted_inputs(task: Task, declared: Trial) -> tuple[str, ...]:
+def inverted_inputs(problem: SearchProblem, declared: FittedModel) -> tuple[str, ...]:
     """A sentence for every driving input with whose sign inverted the declared model more than
     halves the sum of squares of the fit `declared`.
     """
     if is_near_noise_floor(declared):
         return ()
     found = []
-    for k, name in enumerate(task.model.input_names):
-        if task.model.units[name] in DRIVING and more_than_halves(_inverted(task, k), declared):
+    for k, name in enumerate(problem.model.input_names):
+        if problem.model.units[name] in DRIVING and more_than_halves(
+            _inverted(problem, k), declared
+        ):
             found.append(
                 f"The declared model fits far better with the sign of '{name}' inverted: one of"
                 " motor and sensor is wired the other way round; give one of their signals a"
@@ -164,7 +166,7 @@ def inverted_inputs(task: Task, declared: Trial) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _inverted(task: Task, number: int) -> Trial:
+def _inverted(problem: SearchProblem, number: int) -> FittedModel:
     """The declared model fitted to the training runs with the sign of an input inverted, started at
     the values of its rows.
     """
@@ -174,8 +176,8 @@ def _inverted(task: Task, number: int) -> Trial:
         sign[number] = -1.0
         return with_inputs(run, sign * run.held_inputs)
 
-    train, whole = tuple(map(turned, task.train)), tuple(map(turned, task.whole))
-    part = replace(task, train=train, every_sample=train, whole=whole)
+    train, whole = tuple(map(turned, problem.train)), tuple(map(turned, problem.whole))
+    part = replace(problem, train=train, every_sample=train, whole=whole)
     start = declared_start(part)
     space = equation_space(part, start)
     values = start if space is None else first_fit(part, space, start)
@@ -199,7 +201,7 @@ class Visible:
     largest: float | None = None
 
 
-def visible_amounts(task: Task, start: Trial) -> list[Visible]:
+def visible_amounts(problem: SearchProblem, start: FittedModel) -> list[Visible]:
     """Smallest visible change of every free parameter, and amount of every effect that is searched
     for in its simplest form, in their units, at `start`, the declared model with its Jacobians.
     """
@@ -210,14 +212,14 @@ def visible_amounts(task: Task, start: Trial) -> list[Visible]:
         for k, f in enumerate(start.fit.free)
     ]
     simplest: dict[str, Candidate] = {}
-    for candidate in sorted(task.candidates, key=lambda c: len(c.free)):
+    for candidate in sorted(problem.candidates, key=lambda c: len(c.free)):
         if not candidate.is_declared_value:
             simplest.setdefault(candidate.key, candidate)
     most = REACH * float(np.sqrt(len(declared)))
-    named = max(SEEN, float(np.sqrt(task.material / (1.0 - task.material) * len(declared))))
+    named = max(SEEN, float(np.sqrt(problem.material / (1.0 - problem.material) * len(declared))))
 
     def amounts(candidate: Candidate) -> list[Visible]:
-        columns = response_columns(task, start, candidate, candidate.shapes[0], most)
+        columns = response_columns(problem, start, candidate, candidate.shapes[0], most)
         seen = {} if columns is None else dict(zip(columns.free, columns.table.T, strict=True))
         rows = []
         for f in candidate.defining:
@@ -231,9 +233,11 @@ def visible_amounts(task: Task, start: Trial) -> list[Visible]:
         return rows
 
     amount = f"{len(simplest)} effects, each simulated at several amounts"
-    for done, rows in enumerate(task.executor.map(amounts, simplest.values())):
+    for done, rows in enumerate(problem.executor.map(amounts, simplest.values())):
         if done % max(len(simplest) // 4, 1) == 0:
-            task.progress(f"predicting what {len(task.train)} runs can show: {done} of {amount}")
+            problem.progress(
+                f"predicting what {len(problem.train)} runs can show: {done} of {amount}"
+            )
         found += rows
     return found
 

@@ -17,6 +17,7 @@ from scipy.optimize import lsq_linear
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.diagnose.candidates import FAR_OFF, Candidate
+from ptp_symbolic.numeric.diagnose.fitted_model import SearchProblem, restarted
 from ptp_symbolic.numeric.diagnose.regression import (
     Regression,
     Subset,
@@ -34,7 +35,6 @@ from ptp_symbolic.numeric.diagnose.signatures import (
     rows_around,
     signatures,
 )
-from ptp_symbolic.numeric.diagnose.trial import Task, restarted
 from ptp_symbolic.numeric.identify.constants import (
     CYCLES,
     DECLARED_AMOUNT,
@@ -62,13 +62,13 @@ from ptp_symbolic.numeric.identify.run import Run, usual_period
 FloatArray = NDArray[np.float64]
 
 
-def declared_start(task: Task) -> dict[str, float]:
+def declared_start(problem: SearchProblem) -> dict[str, float]:
     """All parameters at the declared starts, every candidate at its vanishing value."""
-    return {**task.fixed, **all_values_at_start(task.free)}
+    return {**problem.fixed, **all_values_at_start(problem.free)}
 
 
 def equation_space(
-    task: Task,
+    problem: SearchProblem,
     start: Mapping[str, float],
     runs: Sequence[Run] | None = None,
     shortest: bool = False,
@@ -78,23 +78,23 @@ def equation_space(
     noise allows with `shortest`, or of a `half_width` in s. None where angles are missing, states
     are sampled or switched, or rows are too few for the free parameters.
     """
-    vector = task.model.parameter_vector
+    vector = problem.model.parameter_vector
     varied = dict(start)
-    for candidate in task.candidates:
+    for candidate in problem.candidates:
         for f in candidate.free:
             amount = f.start
             if candidate.is_declared_value:
                 amount = min((1.0 + DECLARED_AMOUNT) * f.start, f.upper)
             varied.update(dict.fromkeys(f.names, amount))
     others = []
-    for f in task.free:
+    for f in problem.free:
         for factor in (FAR_OFF, 1.0 / FAR_OFF):
             value = float(np.clip(f.start * factor, f.lower, f.upper))
             others.append(vector({**start, **dict.fromkeys(f.names, value)}))
     try:
         space = prepare_equation_space(
-            task.model,
-            task.whole if runs is None else runs,
+            problem.model,
+            problem.whole if runs is None else runs,
             vector(dict(start)),
             others,
             vector(varied),
@@ -104,39 +104,41 @@ def equation_space(
     except InputError:
         return None
     total = sum(int(rows.kept.sum()) for rows in space.rows_of)
-    return space if total > 4 * (len(task.free) + 1) else None
+    return space if total > 4 * (len(problem.free) + 1) else None
 
 
 def possible(
-    task: Task, free: Sequence[FreeParameter], values: Mapping[str, float]
+    problem: SearchProblem, free: Sequence[FreeParameter], values: Mapping[str, float]
 ) -> dict[str, float]:
     """`values` with `free` projected onto the boundary of every relation of the machine that they
     break, as a fit does with its start.
     """
 
     def parameters(phi: FloatArray) -> FloatArray:
-        return task.model.parameter_vector({**values, **all_values(free, phi)})
+        return problem.model.parameter_vector({**values, **all_values(free, phi)})
 
     phi = to_search(free, values)
-    found = nearest_possible(task.model, free, parameters, phi)
+    found = nearest_possible(problem.model, free, parameters, phi)
     return dict(values) if found is phi else {**values, **all_values(free, found)}
 
 
-def first_fit(task: Task, space: EquationSpace, start: Mapping[str, float]) -> dict[str, float]:
+def first_fit(
+    problem: SearchProblem, space: EquationSpace, start: Mapping[str, float]
+) -> dict[str, float]:
     """All parameters of the declared model fitted to its rows, those left out in turn in which a
     joint has left the face of its gap by far more than the rows scatter.
     """
-    first = fit_equations(space, task.free, start, ITERATIONS, task.executor)
-    values = possible(task, task.free, {**start, **first})
+    first = fit_equations(space, problem.free, start, ITERATIONS, problem.executor)
+    values = possible(problem, problem.free, {**start, **first})
     for _ in range(CYCLES):
-        p = task.model.parameter_vector(values)
+        p = problem.model.parameter_vector(values)
         rows, (equation, _, _) = space.rows(p), space.labels()
         scale = dict(zip(equation, robust_scale(rows, equation), strict=True))
         margin = FAR * np.array([scale.get(a, np.inf) for a in range(len(space.layout.angle))])
         if not space.leave_out_pulled(p, margin):
             break
-        first = fit_equations(space, task.free, values, ITERATIONS, task.executor)
-        values = possible(task, task.free, {**values, **first})
+        first = fit_equations(space, problem.free, values, ITERATIONS, problem.executor)
+        values = possible(problem, problem.free, {**values, **first})
     return values
 
 
@@ -239,31 +241,33 @@ class ProposedSets:
     regression: Regression | None
 
 
-def propose(task: Task) -> ProposedSets:
+def propose(problem: SearchProblem) -> ProposedSets:
     """Regress the residual torques and currents along the measured motion on all candidates."""
-    start = declared_start(task)
-    space = equation_space(task, start)
-    waves = tuple(c for c in task.candidates if c.locked is not None)
+    start = declared_start(problem)
+    space = equation_space(problem, start)
+    waves = tuple(c for c in problem.candidates if c.locked is not None)
     if space is None:
-        return ProposedSets(start, (), tuple, task.candidates, waves, False, None, None)
-    values = first_fit(task, space, start)
-    declared, around = _declared_rows(task, space, values), rows_around(space, values)
-    candidates = at_best_delays(space, task.candidates, around, declared.weight)
-    seen, without_influence = signatures(space, candidates, around, declared.weight, task.executor)
-    rows = _regressed(task, space, declared, seen)
+        return ProposedSets(start, (), tuple, problem.candidates, waves, False, None, None)
+    values = first_fit(problem, space, start)
+    declared, around = _declared_rows(problem, space, values), rows_around(space, values)
+    candidates = at_best_delays(space, problem.candidates, around, declared.weight)
+    seen, without_influence = signatures(
+        space, candidates, around, declared.weight, problem.executor
+    )
+    rows = _regressed(problem, space, declared, seen)
 
     def scan(left: FloatArray) -> list[Signature]:
-        return locked_signatures(space, task.candidates, around, left, rows.weight)
+        return locked_signatures(space, problem.candidates, around, left, rows.weight)
 
-    rows = _regressed(task, space, declared, [*seen, *lines(rows, scan)])
+    rows = _regressed(problem, space, declared, [*seen, *lines(rows, scan)])
     preferred, first, others, rows = _best_sets(rows)
-    space.rows(task.model.parameter_vector(values))
-    refine = partial(_refined, task, space, rows, values)
-    sets = tuple(task.executor.map(refine, first))
+    space.rows(problem.model.parameter_vector(values))
+    refine = partial(_refined, problem, space, rows, values)
+    sets = tuple(problem.executor.map(refine, first))
 
     @cache
     def further() -> tuple[ProposedSet, ...]:
-        return tuple(task.executor.map(refine, others))
+        return tuple(problem.executor.map(refine, others))
 
     is_any_preferred = bool(preferred.candidates)
     return ProposedSets(
@@ -272,33 +276,38 @@ def propose(task: Task) -> ProposedSets:
 
 
 def in_rows_of(
-    task: Task, space: EquationSpace, values: Mapping[str, float], beside: Sequence[Candidate]
+    problem: SearchProblem,
+    space: EquationSpace,
+    values: Mapping[str, float],
+    beside: Sequence[Candidate],
 ) -> Regression:
     """The regression of the rows of another space at `values` (all parameters) on all candidates
     whose frequency is known, with weights from the residual of the set `beside`.
     """
-    declared, around = _declared_rows(task, space, values), rows_around(space, values)
-    seen, _ = signatures(space, task.candidates, around, declared.weight, task.executor)
-    return reweighted(_regressed(task, space, declared, seen), beside)
+    declared, around = _declared_rows(problem, space, values), rows_around(space, values)
+    seen, _ = signatures(space, problem.candidates, around, declared.weight, problem.executor)
+    return reweighted(_regressed(problem, space, declared, seen), beside)
 
 
-def _declared_rows(task: Task, space: EquationSpace, values: Mapping[str, float]) -> Linearised:
-    here = {f.name: values[f.name] for f in task.free}
-    return linearised(space, task.free, values, here, task.executor, own_torque=True)
+def _declared_rows(
+    problem: SearchProblem, space: EquationSpace, values: Mapping[str, float]
+) -> Linearised:
+    here = {f.name: values[f.name] for f in problem.free}
+    return linearised(space, problem.free, values, here, problem.executor, own_torque=True)
 
 
 def _regressed(
-    task: Task, space: EquationSpace, declared: Linearised, seen: Sequence[Signature]
+    problem: SearchProblem, space: EquationSpace, declared: Linearised, seen: Sequence[Signature]
 ) -> Regression:
     equation, run, time = space.labels()
     block = blocks_in_time(run, time)
     return regression(
-        declared.rows, task.free, declared.jacobian, seen, equation, block, declared.weight
+        declared.rows, problem.free, declared.jacobian, seen, equation, block, declared.weight
     )
 
 
 def _refined(
-    task: Task,
+    problem: SearchProblem,
     space: EquationSpace,
     rows: Regression,
     values: Mapping[str, float],
@@ -308,12 +317,12 @@ def _refined(
     """A set with the initial values that the rows give, the parameters that shape it fitted to them
     too.
     """
-    begun = start_of(task, rows, candidates, values)
+    begun = start_of(problem, rows, candidates, values)
     own = {(s.candidate.key, s.candidate.member): s.candidate for s in rows.signatures}
     placed = tuple(own[c.key, c.member] for c in candidates)
-    free = (*task.free, *(restarted(f, begun[f.name]) for c in placed for f in c.free))
+    free = (*problem.free, *(restarted(f, begun[f.name]) for c in placed for f in c.free))
     found = fit_equations(space, free, begun, REFINEMENTS, executor)
-    return ProposedSet(placed, possible(task, free, {**begun, **found}))
+    return ProposedSet(placed, possible(problem, free, {**begun, **found}))
 
 
 def placed_by_rows(candidates: Sequence[Candidate], found: ProposedSets) -> tuple[Candidate, ...]:
@@ -330,7 +339,7 @@ def placed_by_rows(candidates: Sequence[Candidate], found: ProposedSets) -> tupl
 
 
 def start_for(
-    task: Task,
+    problem: SearchProblem,
     found: ProposedSets,
     candidates: Sequence[Candidate],
     values: Mapping[str, float],
@@ -346,8 +355,8 @@ def start_for(
     if rows is None or space is None:
         return found.start | kept
     if linear:
-        return start_of(task, rows, shown, found.start) | kept
-    return _refined(task, space, rows, found.start, shown, task.executor).values | kept
+        return start_of(problem, rows, shown, found.start) | kept
+    return _refined(problem, space, rows, found.start, shown, problem.executor).values | kept
 
 
 def _best_sets(
@@ -396,7 +405,10 @@ def _keys(subset: Subset) -> frozenset[str]:
 
 
 def start_of(
-    task: Task, rows: Regression, candidates: Sequence[Candidate], values: Mapping[str, float]
+    problem: SearchProblem,
+    rows: Regression,
+    candidates: Sequence[Candidate],
+    values: Mapping[str, float],
 ) -> dict[str, float]:
     """Values at which to start a set: the amounts of a least squares fit to the rows, within
     bounds, at the best values of the parameters that shape its members; the declared parameters
@@ -443,5 +455,5 @@ def start_of(
                 result.update(dict.fromkeys(f.names, value))
             for signature, shape in zip(found, shapes, strict=True):
                 result.update(signature.candidate.shapes[shape])
-    every = (*task.free, *(f for s in found for f in s.candidate.free))
-    return possible(task, every, result)
+    every = (*problem.free, *(f for s in found for f in s.candidate.free))
+    return possible(problem, every, result)

@@ -18,15 +18,15 @@ from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate, with_what_it_brings
+from ptp_symbolic.numeric.diagnose.fitted_model import (
+    FittedModel,
+    SearchProblem,
+    simulated,
+)
 from ptp_symbolic.numeric.diagnose.proposals import (
     ProposedSet,
 )
 from ptp_symbolic.numeric.diagnose.signatures import at_line, axes_of, band, brought
-from ptp_symbolic.numeric.diagnose.trial import (
-    Task,
-    Trial,
-    simulated,
-)
 from ptp_symbolic.numeric.identify.blocks import SINGULAR
 from ptp_symbolic.numeric.identify.constants import (
     CYCLES_APART,
@@ -184,7 +184,9 @@ class Response:
     shape: Mapping[str, float]
 
 
-def responses(task: Task, trial: Trial, candidates: Sequence[Candidate]) -> list[Response]:
+def responses(
+    problem: SearchProblem, trial: FittedModel, candidates: Sequence[Candidate]
+) -> list[Response]:
     """Responses of `candidates` that the trial does not have, the most promising first, each in the
     form that promises most.
 
@@ -198,8 +200,8 @@ def responses(task: Task, trial: Trial, candidates: Sequence[Candidate]) -> list
     at = _Linear(trial.fit)
 
     def best_form(forms: Sequence[Candidate]) -> Response | None:
-        wholes = [with_what_it_brings(trial.candidates, c, task.candidates) for c in forms]
-        found = _best_form(task, trial, forms, wholes, lambda: at)
+        wholes = [with_what_it_brings(trial.candidates, c, problem.candidates) for c in forms]
+        found = _best_form(problem, trial, forms, wholes, lambda: at)
         if found is None:
             return None
         number, shape, left, moved = found
@@ -207,7 +209,7 @@ def responses(task: Task, trial: Trial, candidates: Sequence[Candidate]) -> list
         proposal = ProposedSet(wholes[number], {**trial.values, **moved})
         return Response(candidate, left, proposal, candidate.shapes[shape])
 
-    jobs = task.executor.map(best_form, wanted.values())
+    jobs = problem.executor.map(best_form, wanted.values())
     return sorted((r for r in jobs if r is not None), key=lambda r: r.left)
 
 
@@ -228,8 +230,8 @@ class _Linear:
 
 @recorded()
 def _best_form(
-    task: Task,
-    trial: Trial,
+    problem: SearchProblem,
+    trial: FittedModel,
     forms: Sequence[Candidate],
     wholes: Sequence[Sequence[Candidate]],
     linear: Callable[[], _Linear],
@@ -243,7 +245,7 @@ def _best_form(
     best = None
     for number, candidate in enumerate(forms):
         for place, shape in enumerate(candidate.shapes):
-            found = response_columns(task, trial, candidate, shape, most, seen)
+            found = response_columns(problem, trial, candidate, shape, most, seen)
             if found is None:
                 continue
             amounts, left = least(at.residual, at.jacobian, found)
@@ -257,8 +259,8 @@ def _best_form(
 
 
 def response_columns(
-    task: Task,
-    trial: Trial,
+    problem: SearchProblem,
+    trial: FittedModel,
     candidate: Candidate,
     shape: Mapping[str, float],
     most: float,
@@ -268,13 +270,13 @@ def response_columns(
     residuals by at most the norm `most`; None where nothing changes or can be simulated. Columns
     that other forms of the candidate have `seen` are not simulated again.
     """
-    by_key = {c.key: c for c in reversed(task.candidates)}
+    by_key = {c.key: c for c in reversed(problem.candidates)}
     brings = any(key not in trial.keys for key in candidate.brings)
     base = {**(brought(candidate, by_key) if brings else {}), **shape}
     residual = [e.residual for e in trial.fit.evaluations]
     without = residual
     if brings:
-        plain = simulated(task, trial.fit, base, None)
+        plain = simulated(problem, trial.fit, base, None)
         if any(e.failed for e in plain):
             return None
         without = [e.residual for e in plain]
@@ -283,7 +285,7 @@ def response_columns(
     for f in candidate.defining:
         key = f.names, f.start, tuple(sorted(base.items()))
         if key not in seen:
-            seen[key] = _column(task, trial, without, base, f, candidate, most)
+            seen[key] = _column(problem, trial, without, base, f, candidate, most)
         if (column := seen[key]) is not None:
             kept.append((f, *column))
     if not kept:
@@ -298,8 +300,8 @@ def response_columns(
 
 
 def _column(
-    task: Task,
-    trial: Trial,
+    problem: SearchProblem,
+    trial: FittedModel,
     without: Sequence[FloatArray],
     base: Mapping[str, float],
     f: FreeParameter,
@@ -317,7 +319,7 @@ def _column(
         amount = min(DECLARED_AMOUNT * abs(f.start), 0.5 * (f.upper - f.start))
     for _ in range(ITERATIONS):
         values = {**base, **dict.fromkeys(f.names, zero + amount)}
-        changed = simulated(task, trial.fit, values, None)
+        changed = simulated(problem, trial.fit, values, None)
         if not any(e.failed for e in changed):
             differences = [(e.residual - r)[:, None] for e, r in zip(changed, without, strict=True)]
             change = stacked(trial.fit, differences)[:, 0]
@@ -360,7 +362,10 @@ def least(here: FloatArray, declared: FloatArray, found: Columns) -> tuple[Float
 
 
 def at_lines_of_outputs(
-    task: Task, space: EquationSpace | None, trial: Trial, waves: Sequence[Candidate]
+    problem: SearchProblem,
+    space: EquationSpace | None,
+    trial: FittedModel,
+    waves: Sequence[Candidate],
 ) -> tuple[Candidate, ...]:
     """Those of the candidates `waves` of which a line stands out in the residual of the outputs, by
     linear prediction; at that line, in all their forms. None without the `space` of rows, which
@@ -371,14 +376,14 @@ def at_lines_of_outputs(
         return ()
     for key in dict.fromkeys(c.key for c in waves):
         forms = [c for c in waves if c.key == key]
-        line = None if key in trial.keys else _line(task, space, trial, forms[0])
+        line = None if key in trial.keys else _line(problem, space, trial, forms[0])
         placed = [at_line(form, *line) for form in forms] if line is not None else []
         found += [c for c in placed if c is not None]
     return tuple(found)
 
 
 def _line(
-    task: Task, space: EquationSpace, trial: Trial, candidate: Candidate
+    problem: SearchProblem, space: EquationSpace, trial: FittedModel, candidate: Candidate
 ) -> tuple[float, float, int] | None:
     """The frequency of the strongest line of a candidate, in Hz or cycles per turn, the lowest that
     is a line, and how many can be resolved; None where none reduces the sum of squares by a
@@ -394,15 +399,17 @@ def _line(
     apart = int((highest - lowest) * span)
     if not rows / ROWS_PER_WINDOW < apart <= SCANNED:
         return None
-    task.progress(f"simulating {candidate.key} at all frequencies, {apart} of which are resolved")
-    best = _strongest(task, trial, candidate, span, lowest, highest, task.material)
+    problem.progress(
+        f"simulating {candidate.key} at all frequencies, {apart} of which are resolved"
+    )
+    best = _strongest(problem, trial, candidate, span, lowest, highest, problem.material)
     return None if best is None else (best, 0.9 * lowest, apart)
 
 
 @recorded()
 def _strongest(
-    task: Task,
-    trial: Trial,
+    problem: SearchProblem,
+    trial: FittedModel,
     candidate: Candidate,
     span: float,
     lowest: float,
@@ -416,21 +423,23 @@ def _strongest(
     residual = projected_off(stacked_residual(trial.fit)[:, None], away)[:, 0]
 
     def left(frequency: float) -> float:
-        return _left(task, trial, candidate, frequency, residual, away)
+        return _left(problem, trial, candidate, frequency, residual, away)
 
     steps = np.arange(lowest, highest, MOST / span)
-    shares = np.array(list(task.executor.map(left, steps)))
+    shares = np.array(list(problem.executor.map(left, steps)))
     best = float(steps[int(np.argmin(shares))])
     others = shares[np.abs(steps - best) > 1.0 / span]
     close = np.clip(best + CYCLES_APART / span * np.array([-1.0, 0.0, 1.0]), lowest, highest)
-    shares = np.array(list(task.executor.map(left, close)))
+    shares = np.array(list(problem.executor.map(left, close)))
     taken, by_others = 1.0 - shares.min(), 1.0 - others.min(initial=1.0)
     if taken < material or by_others > MOST * taken:
         return None
     return float(close[int(np.argmin(shares))])
 
 
-def _place(space: EquationSpace, trial: Trial, candidate: Candidate) -> tuple[float, float, int]:
+def _place(
+    space: EquationSpace, trial: FittedModel, candidate: Candidate
+) -> tuple[float, float, int]:
     """How far the place goes that a wave is locked to, in s or turns, how fast it usually goes as
     it moves, per s (an axis without rows: 1 rad/s), and how many rows there are of it.
     """
@@ -446,8 +455,8 @@ def _place(space: EquationSpace, trial: Trial, candidate: Candidate) -> tuple[fl
 
 
 def _left(
-    task: Task,
-    trial: Trial,
+    problem: SearchProblem,
+    trial: FittedModel,
     candidate: Candidate,
     frequency: float,
     residual: FloatArray,
@@ -459,7 +468,7 @@ def _left(
     assert candidate.locked is not None
     most = REACH * float(np.linalg.norm(residual))
     shapes = [{**shape, candidate.locked[0]: frequency} for shape in candidate.shapes]
-    found = [response_columns(task, trial, candidate, shape, most) for shape in shapes]
+    found = [response_columns(problem, trial, candidate, shape, most) for shape in shapes]
     tables = [columns.table for columns in found if columns is not None]
     if not tables:
         return 1.0

@@ -19,15 +19,25 @@ from ptp_symbolic.numeric.diagnose.cut_runs import (
     growing,
     in_windows_of,
     more_than_halves,
-    parted_task,
+    parted_problem,
     settled,
+)
+from ptp_symbolic.numeric.diagnose.fitted_model import (
+    FittedModel,
+    SearchProblem,
+    deviances,
+    fitted,
+    halving,
+    is_near,
+    ranked,
+    simulated,
 )
 from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.noise_floor import (
-    Carried,
-    carried_noise,
+    PropagatedNoise,
     leaves_white_noise,
     most_hidden,
+    propagated_input_noise,
     with_fewer_samples,
 )
 from ptp_symbolic.numeric.diagnose.proposals import (
@@ -57,16 +67,6 @@ from ptp_symbolic.numeric.diagnose.stepwise import (
     simplified,
     step_of,
 )
-from ptp_symbolic.numeric.diagnose.trial import (
-    Task,
-    Trial,
-    deviances,
-    fitted,
-    halving,
-    is_near,
-    ranked,
-    simulated,
-)
 from ptp_symbolic.numeric.identify.constants import (
     ABOVE_NOISE,
     AMOUNTS,
@@ -84,47 +84,52 @@ FloatArray = NDArray[np.float64]
 
 
 def each_through_windows(
-    task: Task,
-    parent: Trial,
+    problem: SearchProblem,
+    parent: FittedModel,
     candidates: Sequence[Candidate],
-    carried: Carried,
+    propagated: PropagatedNoise,
     *,
     is_white: bool,
-) -> list[Trial]:
+) -> list[FittedModel]:
     """The parent with each of `candidates` but declared values, fitted through windows (see
     `through_windows`); those alone that are reached in time.
     """
     wanted = {c.key: c for c in candidates if not c.is_declared_value}
     found = [
-        through_windows(task, parent, c, carried, is_white=is_white)
+        through_windows(problem, parent, c, propagated, is_white=is_white)
         for c in wanted.values()
-        if not task.is_over
+        if not problem.is_over
     ]
     return [t for t in found if t is not None]
 
 
 def through_windows(
-    task: Task, parent: Trial, candidate: Candidate, carried: Carried, *, is_white: bool
-) -> Trial | None:
+    problem: SearchProblem,
+    parent: FittedModel,
+    candidate: Candidate,
+    propagated: PropagatedNoise,
+    *,
+    is_white: bool,
+) -> FittedModel | None:
     """The parent with a candidate, fitted to whole runs from the end of a fit over windows, and
     again as long as that is better; None where it does not gain materially in a few windows.
-    `carried` is that of `leaves_white_noise`; `is_white`: the noise is known to be, since the
+    `propagated` is that of `leaves_white_noise`; `is_white`: the noise is known to be, since the
     residual of another set is no larger.
     """
-    few = growing(task, few=True)
-    hidden = 1.0 if is_white else most_hidden(task)
-    most = ABOVE_NOISE * np.hypot(hidden, carried.most)
-    candidates = with_what_it_brings(parent.candidates, candidate, task.candidates)
+    few = growing(problem, few=True)
+    hidden = 1.0 if is_white else most_hidden(problem)
+    most = ABOVE_NOISE * np.hypot(hidden, propagated.most)
+    candidates = with_what_it_brings(parent.candidates, candidate, problem.candidates)
     values = _first_values(few, parent, candidates, most) if few else None
     if values is None:
         return None
-    trial = to_its_end(task, fitted(task, candidates, values, None), carried)
-    parts = growing(task)
+    trial = to_its_end(problem, fitted(problem, candidates, values, None), propagated)
+    parts = growing(problem)
     for _ in range(CYCLES):
-        if leaves_white_noise(trial, carried):
+        if leaves_white_noise(trial, propagated):
             break
         values = fitted_through(parts, candidates, trial.values)
-        again = to_its_end(task, fitted(task, candidates, values, None), carried)
+        again = to_its_end(problem, fitted(problem, candidates, values, None), propagated)
         if ranked([trial, again])[0] is trial:
             break
         trial = again
@@ -132,7 +137,10 @@ def through_windows(
 
 
 def _first_values(
-    parts: Sequence[Task], parent: Trial, candidates: Sequence[Candidate], most: FloatArray
+    parts: Sequence[SearchProblem],
+    parent: FittedModel,
+    candidates: Sequence[Candidate],
+    most: FloatArray,
 ) -> Mapping[str, float] | None:
     """Values of the last of `candidates`, with those that it brings along, fitted through windows;
     None where windows on which it has no influence hold more than `most` [ny] times their noise,
@@ -151,14 +159,14 @@ def _first_values(
     if not any(_may_be_all(shortest, alone, start, most) for start in starts):
         return None
 
-    def followed(start: Mapping[str, float]) -> Trial:
+    def followed(start: Mapping[str, float]) -> FittedModel:
         part = replace(shortest, fixed={**shortest.fixed, **start})
         others = settled(
             part, fitted(part, parent.candidates, {**alone.values, **start}, None), None, brief=True
         )
         return fitted_to_windows(shortest, candidates, others.values)
 
-    with_it: list[Trial] = []
+    with_it: list[FittedModel] = []
     for part in parts:
         if part is shortest:
             jobs = [run.submit(followed, start) for start in starts]
@@ -174,8 +182,8 @@ def _first_values(
 
 
 def _scanned(
-    part: Task, alone: Trial, added: Sequence[Candidate], shape: Mapping[str, float]
-) -> Trial:
+    part: SearchProblem, alone: FittedModel, added: Sequence[Candidate], shape: Mapping[str, float]
+) -> FittedModel:
     """A trial with the best of several amounts of what is added, of some `shape`, fitted on."""
     candidates = (*alone.candidates, *added)
     values = [{**alone.values, **_amounts(added, k), **shape} for k in AMOUNTS]
@@ -193,7 +201,9 @@ def _amounts(candidates: Sequence[Candidate], factor: float) -> dict[str, float]
     }
 
 
-def _may_be_all(part: Task, alone: Trial, amounts: Mapping[str, float], most: FloatArray) -> bool:
+def _may_be_all(
+    part: SearchProblem, alone: FittedModel, amounts: Mapping[str, float], most: FloatArray
+) -> bool:
     """Whether a candidate at some `amounts` changes some windows, and the residual of the others is
     within noise, at `most` [ny]: else something else is missing too.
     """
@@ -205,7 +215,7 @@ def _may_be_all(part: Task, alone: Trial, amounts: Mapping[str, float], most: Fl
 
 
 @recorded()
-def _changed(part: Task, fit: Fit, amounts: Mapping[str, float]) -> list[bool]:
+def _changed(part: SearchProblem, fit: Fit, amounts: Mapping[str, float]) -> list[bool]:
     """Which windows of a fit a candidate changes at some `amounts`."""
     return [
         e.failed is not None or not np.array_equal(e.residual, before.residual)
@@ -214,13 +224,13 @@ def _changed(part: Task, fit: Fit, amounts: Mapping[str, float]) -> list[bool]:
 
 
 def extended(
-    stepwise: StepwiseSearch, best: Trial, steps: list[Step], end: Trial | None = None
-) -> tuple[Trial, list[Step]]:
+    stepwise: StepwiseSearch, best: FittedModel, steps: list[Step], end: FittedModel | None = None
+) -> tuple[FittedModel, list[Step]]:
     """A pruned trial with one candidate more as long as one is needed, up to the set of `end`, to
     which none could be added before; and the `steps` of its candidates. A candidate that came first
     may be dropped once others are there: then there is room for one more.
     """
-    material = stepwise.task.material
+    material = stepwise.problem.material
     for rounds in range(2 * LARGEST):
         if rounds >= LARGEST <= len(best.candidates):
             break
@@ -243,7 +253,9 @@ def extended(
     return best, steps
 
 
-def floated(stepwise: StepwiseSearch, best: Trial, steps: list[Step]) -> tuple[Trial, list[Step]]:
+def floated(
+    stepwise: StepwiseSearch, best: FittedModel, steps: list[Step]
+) -> tuple[FittedModel, list[Step]]:
     """The trial, or a better one from where a set goes without one of its candidates: an alias of
     an effect hides it as long as it is there (floating search: Pudil, Novovicova and Kittler,
     1994).
@@ -251,17 +263,17 @@ def floated(stepwise: StepwiseSearch, best: Trial, steps: list[Step]) -> tuple[T
     if stepwise.is_white(best):
         return best, steps
     for step in steps:
-        others = tuple(c for c in stepwise.task.candidates if c.key != step.candidate.key)
+        others = tuple(c for c in stepwise.problem.candidates if c.key != step.candidate.key)
         grown = stepwise.among(others).grown(step.without, briefly=True)
-        if grown is not None and gain(grown, best).share >= stepwise.task.material:
+        if grown is not None and gain(grown, best).share >= stepwise.problem.material:
             stepwise.tried.others.append(best)
             return extended(stepwise, *stepwise.pruned(stepwise.completed(grown)))
     return best, steps
 
 
 def by_effects_alone(
-    stepwise: StepwiseSearch, best: Trial, steps: list[Step], end: Trial | None = None
-) -> tuple[Trial, list[Step]]:
+    stepwise: StepwiseSearch, best: FittedModel, steps: list[Step], end: FittedModel | None = None
+) -> tuple[FittedModel, list[Step]]:
     """The trial, or its effects alone where their residual is white, or the result of forward
     selection among effects alone, if that fits better, or has a white residual too with no more
     parameters. `end` is that of `extended`.
@@ -277,12 +289,12 @@ def by_effects_alone(
         return best, steps
     effects = tuple(c for c in best.candidates if not c.is_declared_value)
     if known and effects:
-        left = stepwise.polished(ranked(taken_over(stepwise.task, effects, best))[0])
+        left = stepwise.polished(ranked(taken_over(stepwise.problem, effects, best))[0])
         if stepwise.is_white(left):
             stepwise.tried.others.append(best)
             return stepwise.pruned(left)
         stepwise.tried.others.append(left)
-    alone = stepwise.among(tuple(c for c in stepwise.task.candidates if not c.is_declared_value))
+    alone = stepwise.among(tuple(c for c in stepwise.problem.candidates if not c.is_declared_value))
     other, fewer = extended(alone, stepwise.declared, [], end)
     no_larger = stepwise.is_white(other) and len(other.fit.free) <= len(best.fit.free)
     if ranked([best, other])[0] is best and not (quiet and no_larger):
@@ -292,67 +304,75 @@ def by_effects_alone(
     return other, fewer
 
 
-def search(task: Task, *, brief: bool = False) -> Search:
+def search(problem: SearchProblem, *, brief: bool = False) -> Search:
     """Find the set of candidates that the training runs support; once its allowance is over, with
     what has been tried by then. A `brief` search ends with what is found soon: enough to see
     whether any set fits as well as a model whose residual is noise alone.
     """
-    task.progress("comparing all sets of effects along the measured motion")
-    proposals = propose(task)
-    task = replace(task, candidates=placed_by_rows(task.candidates, proposals))
-    task = with_fewer_samples(task, proposals.start)
-    task.progress("fitting the declared model")
+    problem.progress("comparing all sets of effects along the measured motion")
+    proposals = propose(problem)
+    problem = replace(problem, candidates=placed_by_rows(problem.candidates, proposals))
+    problem = with_fewer_samples(problem, proposals.start)
+    problem.progress("fitting the declared model")
     before = None
-    if task.windows:
-        stepwise = _seeker(*over_whole_runs(task, proposals), proposals)
+    if problem.windows:
+        stepwise = _seeker(*over_whole_runs(problem, proposals), proposals)
         before = stepwise.declared
         stepwise, found = _with_lines(stepwise, _soon_found(stepwise), _soon_found)
-        if stepwise.task.is_over or any(map(stepwise.is_white, (stepwise.declared, *found))):
+        if stepwise.problem.is_over or any(map(stepwise.is_white, (stepwise.declared, *found))):
             return replace(_from_declared(stepwise, found), is_over_windows=False)
         if brief:
             best = stepwise.pruned(ranked([stepwise.declared, *found])[0])
             return replace(_ended(stepwise, *best), is_over_windows=False)
-        task = replace(task, candidates=stepwise.task.candidates)
+        problem = replace(problem, candidates=stepwise.problem.candidates)
         proposals = stepwise.proposals
-        task.progress("fitting the declared model over windows")
-    part, after = fitted_over_windows(task, proposals)
+        problem.progress("fitting the declared model over windows")
+    part, after = fitted_over_windows(problem, proposals)
     declared = after if before is None else better_over_same_runs(before, after)
     stepwise = _seeker(part, declared, proposals)
     found = _proposed(stepwise)
-    if not task.windows:
+    if not problem.windows:
         stepwise, found = _with_lines(stepwise, found, _proposed)
     if brief and not any(map(stepwise.is_white, (stepwise.declared, *found))):
         return _ended(stepwise, *stepwise.pruned(ranked([stepwise.declared, *found])[0]))
     return _from_declared(stepwise, found)
 
 
-def _seeker(task: Task, declared: Trial, proposals: ProposedSets) -> StepwiseSearch:
-    return StepwiseSearch(task, declared, proposals, carried_noise(task, declared.fit))
+def _seeker(
+    problem: SearchProblem, declared: FittedModel, proposals: ProposedSets
+) -> StepwiseSearch:
+    return StepwiseSearch(
+        problem, declared, proposals, propagated_input_noise(problem, declared.fit)
+    )
 
 
 def _with_lines(
-    stepwise: StepwiseSearch, found: list[Trial], again: Callable[[StepwiseSearch], list[Trial]]
-) -> tuple[StepwiseSearch, list[Trial]]:
+    stepwise: StepwiseSearch,
+    found: list[FittedModel],
+    again: Callable[[StepwiseSearch], list[FittedModel]],
+) -> tuple[StepwiseSearch, list[FittedModel]]:
     """The search and what it has `found`; or where its residual exceeds the noise, and lines of
     waves stand out in the outputs, one that has them at these, and what that finds `again`.
     """
     every, before = [stepwise.declared, *found], stepwise.proposals
-    if stepwise.task.is_over or any(map(stepwise.is_white, every)):
+    if stepwise.problem.is_over or any(map(stepwise.is_white, every)):
         return stepwise, found
     beside = ranked([t for t in every if all(c.locked is None for c in t.candidates)])[0]
-    placed = at_lines_of_outputs(stepwise.task, before.space, beside, before.waves)
+    placed = at_lines_of_outputs(stepwise.problem, before.space, beside, before.waves)
     if not placed:
         return stepwise, found
     keys = {c.key for c in placed}
-    others = [c for c in stepwise.task.candidates if c.key not in keys]
-    task = replace(stepwise.task, candidates=(*others, *placed))
-    proposals = replace(propose(task), waves=before.waves)
-    task = replace(task, candidates=placed_by_rows(task.candidates, proposals))
-    lined = StepwiseSearch(task, stepwise.declared, proposals, stepwise.carried, stepwise.tried)
+    others = [c for c in stepwise.problem.candidates if c.key not in keys]
+    problem = replace(stepwise.problem, candidates=(*others, *placed))
+    proposals = replace(propose(problem), waves=before.waves)
+    problem = replace(problem, candidates=placed_by_rows(problem.candidates, proposals))
+    lined = StepwiseSearch(
+        problem, stepwise.declared, proposals, stepwise.propagated, stepwise.tried
+    )
     return lined, again(lined)
 
 
-def _proposed(stepwise: StepwiseSearch) -> list[Trial]:
+def _proposed(stepwise: StepwiseSearch) -> list[FittedModel]:
     """The best of the proposed sets, to its end, and where neither that nor the declared model has
     a white residual, the best of those that the rows rank next; none where the declared model has
     one and the rows prefer no set.
@@ -361,25 +381,25 @@ def _proposed(stepwise: StepwiseSearch) -> list[Trial]:
     if not proposals.is_any_preferred and stepwise.is_white(best):
         return []
     found = _refitted(stepwise, proposals.sets, [])
-    if not (stepwise.task.is_over or any(map(stepwise.is_white, (best, *found)))):
+    if not (stepwise.problem.is_over or any(map(stepwise.is_white, (best, *found)))):
         found += _refitted(stepwise, proposals.further(), found)
     return found
 
 
 def _refitted(
-    stepwise: StepwiseSearch, sets: Sequence[ProposedSet], known: Sequence[Trial]
-) -> list[Trial]:
+    stepwise: StepwiseSearch, sets: Sequence[ProposedSet], known: Sequence[FittedModel]
+) -> list[FittedModel]:
     """The best of some sets, to its end; none where what is `known` is far better."""
-    task = stepwise.task
-    begun = started(task, stepwise.declared, sets)
-    task.progress(f"refitting {len(begun)} proposed sets")
-    found = halving(task, begun, SCREENED, 1, seen=stepwise.tried.others)
+    problem = stepwise.problem
+    begun = started(problem, stepwise.declared, sets)
+    problem.progress(f"refitting {len(begun)} proposed sets")
+    found = halving(problem, begun, SCREENED, 1, seen=stepwise.tried.others)
     every = [stepwise.declared, *known, *found]
     stepwise.follow(ranked(every)[0])
     return [stepwise.completed(t) for t in found if is_near(t, every)]
 
 
-def _soon_found(stepwise: StepwiseSearch) -> list[Trial]:
+def _soon_found(stepwise: StepwiseSearch) -> list[FittedModel]:
     """What is proposed, and with one candidate more as long as that more than halves the sum of
     squares: only the last set, where its residual is white. One that ends near the noise floor is
     restarted from the rows first.
@@ -403,7 +423,7 @@ def _soon_found(stepwise: StepwiseSearch) -> list[Trial]:
     return [best]
 
 
-def _from_declared(stepwise: StepwiseSearch, found: list[Trial]) -> Search:
+def _from_declared(stepwise: StepwiseSearch, found: list[FittedModel]) -> Search:
     """Complete what is `found` of the proposed sets, prune, grow, simplify; where the declared
     model fits better from the end of the chosen set (or from a far start), from the beginning, or
     with new gains if the residual is white; where an added effect multiplies small errors, from the
@@ -421,8 +441,8 @@ def _from_declared(stepwise: StepwiseSearch, found: list[Trial]) -> Search:
     declared, before = _declared_after(stepwise, better), stepwise.declared
     if declared is not before:
         stepwise.declared = declared
-        is_better = gain(declared, before).share >= stepwise.task.material
-        if is_better and not stepwise.task.is_over and not stepwise.is_white(better):
+        is_better = gain(declared, before).share >= stepwise.problem.material
+        if is_better and not stepwise.problem.is_over and not stepwise.is_white(better):
             stepwise.tried.others.clear()
             return _from_declared(stepwise, _proposed(stepwise))
     if better is not best or declared is not before:
@@ -431,18 +451,18 @@ def _from_declared(stepwise: StepwiseSearch, found: list[Trial]) -> Search:
     return replace(ended, is_taken_over=declared is not before and bool(better.candidates))
 
 
-def _begun(stepwise: StepwiseSearch, found: list[Trial]) -> tuple[Trial, list[Step]]:
+def _begun(stepwise: StepwiseSearch, found: list[FittedModel]) -> tuple[FittedModel, list[Step]]:
     """The best of the proposed sets, of effects that the motion does not show, and of effects that
     show in windows, pruned; and the steps of its candidates.
     """
-    task, best = stepwise.task, stepwise.declared
+    problem, best = stepwise.problem, stepwise.declared
     if stepwise.proposals.is_any_preferred or not stepwise.is_white(best):
         if not stepwise.have_answer(best, *found, *stepwise.tried.others):
             without_influence = stepwise.without_influence(best)
-            task.progress(
+            problem.progress(
                 f"refitting {len(without_influence)} effects that the motion does not show"
             )
-            found = found + halving(task, without_influence, 1)
+            found = found + halving(problem, without_influence, 1)
         ends = [stepwise.completed(t) if is_near(t, found) else t for t in found]
         best = ranked([best, *ends])[0]
         stepwise.tried.others.extend(t for t in ends if t is not best)
@@ -452,10 +472,10 @@ def _begun(stepwise: StepwiseSearch, found: list[Trial]) -> tuple[Trial, list[St
     if pruned is not None and stepwise.have_answer(pruned[0]):
         return pruned
     each = each_through_windows(
-        task,
+        problem,
         stepwise.declared,
         stepwise.proposals.without_influence,
-        stepwise.carried,
+        stepwise.propagated,
         is_white=pruned is not None,
     )
     simplest = stepwise.simplest([best, *each])
@@ -463,8 +483,8 @@ def _begun(stepwise: StepwiseSearch, found: list[Trial]) -> tuple[Trial, list[St
 
 
 def _over_other_roads(
-    stepwise: StepwiseSearch, begun: Trial, grown: Trial, steps: list[Step]
-) -> tuple[Trial, list[Step]]:
+    stepwise: StepwiseSearch, begun: FittedModel, grown: FittedModel, steps: list[Step]
+) -> tuple[FittedModel, list[Step]]:
     """What was `begun` and `grown`, or what an exchange of candidates or effects alone give, if
     that is better; and the steps of its candidates.
     """
@@ -478,57 +498,57 @@ def _over_other_roads(
     return best, steps
 
 
-def _declared_after(stepwise: StepwiseSearch, trial: Trial) -> Trial:
+def _declared_after(stepwise: StepwiseSearch, trial: FittedModel) -> FittedModel:
     """The declared model fitted from the end of the chosen trial, which may be one itself."""
     if not trial.candidates:
         return trial
-    found = declared_from(stepwise.task, trial, stepwise.declared, stepwise.carried)
+    found = declared_from(stepwise.problem, trial, stepwise.declared, stepwise.propagated)
     return stepwise.declared if found is None else found
 
 
-def _ended(stepwise: StepwiseSearch, best: Trial, steps: list[Step]) -> Search:
+def _ended(stepwise: StepwiseSearch, best: FittedModel, steps: list[Step]) -> Search:
     """The search that chose the trial, with each of its candidates in its simplest form."""
-    is_cut_short, best = stepwise.task.is_over, stepwise.sharpened(simplified(stepwise, best))
+    is_cut_short, best = stepwise.problem.is_over, stepwise.sharpened(simplified(stepwise, best))
     if stepwise.is_white(best):
         without = {s.candidate.key: s.without for s in steps}
     else:  # the search was brief
         without = {c.key: stepwise.without(best, c) for c in best.candidates}
     members = tuple(step_of(best, c, without[c.key]) for c in best.candidates)
     return Search(
-        replace(stepwise.task, allowance=Allowance()),
+        replace(stepwise.problem, allowance=Allowance()),
         stepwise.declared,
         best,
         members,
         stepwise.tried,
         stepwise.proposals,
-        stepwise.carried,
+        stepwise.propagated,
         is_cut_short,
     )
 
 
-def _better_from_far_off(stepwise: StepwiseSearch, best: Trial) -> Trial:
+def _better_from_far_off(stepwise: StepwiseSearch, best: FittedModel) -> FittedModel:
     """The trial, or the end of a fit that starts elsewhere over a declared parameter that is weakly
     identified by the rows, where that is significantly likelier for one parameter: deviances differ
     by minus twice the logarithm of the ratio of likelihoods.
     """
-    if stepwise.task.is_over:
+    if stepwise.problem.is_over:
         return best
-    found = halving(stepwise.task, from_far_off(stepwise.task, stepwise.proposals, best), 1)
+    found = halving(stepwise.problem, from_far_off(stepwise.problem, stepwise.proposals, best), 1)
     before, *after = deviances([best, *found])
     is_lower = bool(after) and before - after[0] > DEVIATIONS**2
     return stepwise.polished(found[0]) if is_lower else best
 
 
-def _in_windows(stepwise: StepwiseSearch, best: Trial) -> StepwiseSearch | None:
-    """A search in windows where the best of another needs them (`parted_task`, `in_windows_of`);
+def _in_windows(stepwise: StepwiseSearch, best: FittedModel) -> StepwiseSearch | None:
+    """A search in windows where the best of another needs them (`parted_problem`, `in_windows_of`);
     None where its residual is white, where runs can be predicted to their end, and where most of
     the residual stays in windows too: something else is missing then.
     """
-    if not best.candidates or stepwise.task.is_over or stepwise.is_white(best):
+    if not best.candidates or stepwise.problem.is_over or stepwise.is_white(best):
         return None
-    for cut in (parted_task, in_windows_of):
-        part = cut(stepwise.task, best)
-        if part is stepwise.task:
+    for cut in (parted_problem, in_windows_of):
+        part = cut(stepwise.problem, best)
+        if part is stepwise.problem:
             continue
         part = with_fewer_samples(part, best.values)
         if not more_than_halves(refitted_in(part, best), best):

@@ -13,11 +13,20 @@ from weakref import WeakKeyDictionary
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.confirm import is_moved_by_inputs
+from ptp_symbolic.numeric.diagnose.fitted_model import (
+    FittedModel,
+    SearchProblem,
+    deviances,
+    fitted,
+    halving,
+    ranked,
+    side_by_side,
+)
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain
 from ptp_symbolic.numeric.diagnose.noise_floor import (
-    carried_noise,
     leaves_noise_alone,
     noise_floor_of,
+    propagated_input_noise,
 )
 from ptp_symbolic.numeric.diagnose.proposals import ProposedSets, propose
 from ptp_symbolic.numeric.diagnose.refits import (
@@ -28,20 +37,13 @@ from ptp_symbolic.numeric.diagnose.refits import (
     refitted_in,
 )
 from ptp_symbolic.numeric.diagnose.stepwise import is_earned
-from ptp_symbolic.numeric.diagnose.trial import (
-    Task,
-    Trial,
-    deviances,
-    fitted,
-    halving,
-    ranked,
-    side_by_side,
-)
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.windows import parted_like
 
-_ON_OTHER_RUNS: WeakKeyDictionary[Trial, dict[tuple[Any, ...], Trial]] = WeakKeyDictionary()
+_ON_OTHER_RUNS: WeakKeyDictionary[FittedModel, dict[tuple[Any, ...], FittedModel]] = (
+    WeakKeyDictionary()
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,8 +54,8 @@ class FittedStructure:
 
     added: tuple[Candidate, ...]
     provides: frozenset[str]
-    task: Task
-    trial: Trial
+    problem: SearchProblem
+    trial: FittedModel
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -65,8 +67,8 @@ class FittedStructure:
         """Whether it leaves noise alone."""
         if self.trial.fit.failed:
             return False
-        carried = carried_noise(self.task, self.trial.fit)
-        return leaves_noise_alone(self.trial, noise_floor_of(self.task, self.trial, carried))
+        propagated = propagated_input_noise(self.problem, self.trial.fit)
+        return leaves_noise_alone(self.trial, noise_floor_of(self.problem, self.trial, propagated))
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,51 +82,53 @@ class Begun:
 
     def finished(self) -> "Begun":
         """The structure fitted to the end of whole runs; windows are for `over_windows_too`."""
-        task = self.fitted.task
-        return self._with(*over_whole_runs(task, self.proposals)) if task.windows else self
+        problem = self.fitted.problem
+        return self._with(*over_whole_runs(problem, self.proposals)) if problem.windows else self
 
     def over_windows_too(self) -> "Begun":
         """The structure led over windows, where whole runs leave more than noise."""
         if self.fitted.is_noise_alone:
             return self
-        return self._with(*fitted_over_windows(self.fitted.task, self.proposals))
+        return self._with(*fitted_over_windows(self.fitted.problem, self.proposals))
 
     def from_values(self, values: Mapping[str, float]) -> "Begun":
         """The structure fitted to the end from `values` of another one that contains it, where that
         leads to a better fit.
         """
-        task = self.fitted.task
-        own = {f.name for f in task.free}
+        problem = self.fitted.problem
+        own = {f.name for f in problem.free}
         start = {**self.fitted.trial.values, **{n: v for n, v in values.items() if n in own}}
-        begun = fitted(task, (), start, None, executor=task.executor)
-        best = (halving(task, [begun], 1) or [begun])[0]
-        return self._with(task, polished(task, best, carried_noise(task, best.fit)))
+        begun = fitted(problem, (), start, None, executor=problem.executor)
+        best = (halving(problem, [begun], 1) or [begun])[0]
+        return self._with(
+            problem, polished(problem, best, propagated_input_noise(problem, best.fit))
+        )
 
-    def _with(self, task: Task, trial: Trial) -> "Begun":
+    def _with(self, problem: SearchProblem, trial: FittedModel) -> "Begun":
         """The structure with a trial, or with its own where that fits better in the same runs."""
         if _alike(trial, self.fitted.trial):
             trial = ranked([trial, self.fitted.trial])[0]
         proposals = replace(self.proposals, start=trial.values)
-        return Begun(replace(self.fitted, task=task, trial=trial), proposals)
+        return Begun(replace(self.fitted, problem=problem, trial=trial), proposals)
 
 
-def _alike(one: Trial, other: Trial) -> bool:
+def _alike(one: FittedModel, other: FittedModel) -> bool:
     return [r.size for r in one.fit.runs] == [r.size for r in other.fit.runs]
 
 
 def begin_structure(
     keys: Sequence[str],
     provides: frozenset[str],
-    task: Task,
+    problem: SearchProblem,
     starts: Sequence[Mapping[str, float]],
     known: Mapping[str, float],
 ) -> Begun:
-    """The structure of `task`, begun from `starts` (of the parameters that the effects named in
+    """The structure of `problem`, begun from `starts` (of the parameters that the effects named in
     `keys` bring), each beside the declared start and beside `known` values of a fit of the declared
     structure.
     """
-    proposals = propose(task)
-    own = {f.name: f for f in task.free}
+    proposals = propose(problem)
+    own = {f.name: f for f in problem.free}
     fitted_before = {n: inside(own[n], value) for n, value in known.items() if n in own}
     every = [
         {**proposals.start, **beside, **start}
@@ -132,16 +136,16 @@ def begin_structure(
         for start in ({}, *starts)
     ]
     distinct = {tuple(sorted(values.items())): values for values in every}
-    begun = [fitted(task, (), v, None, executor=task.executor) for v in distinct.values()]
-    trial = (halving(task, begun, 2, 1) or begun[:1])[0]
+    begun = [fitted(problem, (), v, None, executor=problem.executor) for v in distinct.values()]
+    trial = (halving(problem, begun, 2, 1) or begun[:1])[0]
     proposals = replace(proposals, start=trial.values)
-    return Begun(FittedStructure(effects_of(task, keys), provides, task, trial), proposals)
+    return Begun(FittedStructure(effects_of(problem, keys), provides, problem, trial), proposals)
 
 
-def effects_of(task: Task, keys: Sequence[str]) -> tuple[Candidate, ...]:
+def effects_of(problem: SearchProblem, keys: Sequence[str]) -> tuple[Candidate, ...]:
     """The effects named in `keys` as candidates that nothing switches off, in their order."""
-    free = {f.name: f for f in task.free}
-    own = {e.key: e for e in task.model.effects}
+    free = {f.name: f for f in problem.free}
+    own = {e.key: e for e in problem.model.effects}
     return tuple(
         Candidate(
             effect.id,
@@ -155,7 +159,7 @@ def effects_of(task: Task, keys: Sequence[str]) -> tuple[Candidate, ...]:
     )
 
 
-def on_runs_of(task: Task, trial: Trial, pattern: Sequence[Run]) -> Trial:
+def on_runs_of(problem: SearchProblem, trial: FittedModel, pattern: Sequence[Run]) -> FittedModel:
     """The trial fitted to the windows and samples of other runs of the same logs; kept as long as
     the trial is, for one is compared with many.
     """
@@ -164,17 +168,17 @@ def on_runs_of(task: Task, trial: Trial, pattern: Sequence[Run]) -> Trial:
     )
     if own == other:
         return trial
-    kept, windows = _ON_OTHER_RUNS.setdefault(trial, {}), (task, *other)
+    kept, windows = _ON_OTHER_RUNS.setdefault(trial, {}), (problem, *other)
     if windows not in kept:
-        runs = parted_like(task.model, task.whole, pattern)
-        part = replace(task, every_sample=runs, train=runs, windows=())
+        runs = parted_like(problem.model, problem.whole, pattern)
+        part = replace(problem, every_sample=runs, train=runs, windows=())
         kept[windows] = refitted_in(part, trial)
     return kept[windows]
 
 
 def gain_over(one: FittedStructure, other: FittedStructure) -> Gain:
     """What the first of two structures predicts better than the second."""
-    return gain(one.trial, on_runs_of(other.task, other.trial, one.trial.fit.runs))
+    return gain(one.trial, on_runs_of(other.problem, other.trial, one.trial.fit.runs))
 
 
 def by_fit(declared: FittedStructure, found: Sequence[FittedStructure]) -> list[FittedStructure]:
@@ -184,7 +188,7 @@ def by_fit(declared: FittedStructure, found: Sequence[FittedStructure]) -> list[
     """
     whole = [s for s in found if not s.trial.fit.failed]
     gains = side_by_side(lambda s: gain_over(s, declared), whole)
-    better = [s for s, g in zip(whole, gains, strict=True) if g.share >= declared.task.material]
+    better = [s for s, g in zip(whole, gains, strict=True) if g.share >= declared.problem.material]
     each = side_by_side(lambda s: deviance(s, declared), better)
     cost = {id(s): m for s, m in zip(better, each, strict=True)}
     left, ordered = sorted(better, key=lambda s: cost[id(s)]), []
@@ -203,13 +207,13 @@ def _is_as_good(simpler: FittedStructure, best: FittedStructure) -> bool:
     """
     if simpler.provides < best.provides:
         return not is_better(best, simpler)
-    return gain_over(best, simpler).share < best.task.material
+    return gain_over(best, simpler).share < best.problem.material
 
 
 def is_better(one: FittedStructure, other: FittedStructure) -> bool:
     """Whether the first of two structures predicts a material share better, clearly so."""
     earned = gain_over(one, other)
-    return earned.share >= one.task.material and earned.is_significant(1)
+    return earned.share >= one.problem.material and earned.is_significant(1)
 
 
 def _size(structure: FittedStructure) -> int:
@@ -219,7 +223,7 @@ def _size(structure: FittedStructure) -> int:
 def deviance(structure: FittedStructure, declared: FittedStructure) -> float:
     """How badly a structure fits, in the windows of the declared one."""
     pattern = declared.trial.fit.runs
-    return deviances([declared.trial, on_runs_of(structure.task, structure.trial, pattern)])[1]
+    return deviances([declared.trial, on_runs_of(structure.problem, structure.trial, pattern)])[1]
 
 
 def alternatives(
@@ -237,13 +241,13 @@ def alternatives(
     return [s for s, worse in zip(others, beaten, strict=True) if not worse]
 
 
-def is_identifiable(effect: Candidate, trial: Trial) -> bool:
+def is_identifiable(effect: Candidate, trial: FittedModel) -> bool:
     """Whether the logs tell any parameter of an effect that a trial has."""
     own = [e for e in estimates(trial.fit) if e.name in effect.parameters]
     return any(e.identified and not e.at_bound for e in own)
 
 
-def named_effects(structure: FittedStructure, trial: Trial) -> tuple[Candidate, ...]:
+def named_effects(structure: FittedStructure, trial: FittedModel) -> tuple[Candidate, ...]:
     """The effects of a structure, as a trial that has it tells them: one that came along with the
     first, and of which the logs tell nothing, is a part of it.
     """
@@ -255,9 +259,9 @@ def named_effects(structure: FittedStructure, trial: Trial) -> tuple[Candidate, 
 
 def why_rejected(
     structure: FittedStructure,
-    task: Task,
-    trial: Trial,
-    without: Trial,
+    problem: SearchProblem,
+    trial: FittedModel,
+    without: FittedModel,
     quiet: bool,
     tests: int,
 ) -> tuple[Gain, str | None]:
@@ -267,7 +271,7 @@ def why_rejected(
     """
     earned = gain(trial, without)
     share, least = (100.0 * max(x, 0.0) for x in (earned.share, earned.lower))
-    if not is_earned(earned, 1.0, tests, task.material):
+    if not is_earned(earned, 1.0, tests, problem.material):
         return (
             earned,
             f"reduces the sum of squares by {share:.0f} % (lower 95 % limit {least:.0f} %), which"
@@ -279,6 +283,6 @@ def why_rejected(
     first = structure.added[0]
     if not is_identifiable(first, trial):
         return earned, f"no parameter of {first.key} is identifiable from these logs"
-    if not is_moved_by_inputs(replace(task, train=trial.fit.runs), trial):
+    if not is_moved_by_inputs(replace(problem, train=trial.fit.runs), trial):
         return earned, "with it the simulated motion no longer depends on the inputs"
     return earned, None

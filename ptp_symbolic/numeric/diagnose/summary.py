@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import DECLARED_VALUE, Candidate
+from ptp_symbolic.numeric.diagnose.fitted_model import FittedModel, ranked
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain
 from ptp_symbolic.numeric.diagnose.noise_floor import NoiseFloor
 from ptp_symbolic.numeric.diagnose.regression import gain_along_motion
 from ptp_symbolic.numeric.diagnose.stepwise import Search
-from ptp_symbolic.numeric.diagnose.trial import Trial, ranked
 from ptp_symbolic.numeric.diagnose.verdict import (
     EXPLAINED,
     NOTHING_MISSING,
@@ -221,7 +221,7 @@ def _joined(windows: list[FloatArray]) -> FloatArray:
 _PART = re.compile(r"(\w+_)(sin|cos)(\d?)(_\w+)")  # a part of a wave of `harmonics`
 
 
-def sizes_of(after: Trial, intervals: Mapping[str, Estimate]) -> dict[str, str]:
+def sizes_of(after: FittedModel, intervals: Mapping[str, Estimate]) -> dict[str, str]:
     """How large every named effect of the trial `after` is, by its key: of the parameters that
     switch it on the most significant one, of a wave the amplitude, with its number of cycles where
     that was found, of what nothing switches off its first one; angles in degrees.
@@ -352,7 +352,7 @@ def _worded(error: Mapping[str, Any]) -> str:
     return f"{error['rmse_counts']:.3f} counts rms"
 
 
-def cause(candidate: Candidate, trial: Trial) -> str:
+def cause(candidate: Candidate, trial: FittedModel) -> str:
     """What `candidate` says is wrong with the declared machine; of a value also by how much."""
     if not candidate.is_declared_value:
         return candidate.title
@@ -363,14 +363,14 @@ def cause(candidate: Candidate, trial: Trial) -> str:
     return f"declared value of {name} is wrong by {written} % ({meaning})"
 
 
-def deviation(candidate: Candidate, trial: Trial) -> float:
+def deviation(candidate: Candidate, trial: FittedModel) -> float:
     """By how many percent the fit moved a declared value."""
     (name,) = candidate.parameters
     declared = candidate.vanishing[name]
     return 100.0 * (trial.values[name] - declared) / abs(declared)
 
 
-def _is_small(candidate: Candidate, trial: Trial) -> bool:
+def _is_small(candidate: Candidate, trial: FittedModel) -> bool:
     """Whether a declared value is off by less than a material share of a material share."""
     return candidate.is_declared_value and abs(deviation(candidate, trial)) < 100.0 * MATERIAL**2
 
@@ -409,7 +409,7 @@ def error_table(parts: dict[str, tuple[Fit, Fit]], floor: NoiseFloor) -> dict[st
     return table
 
 
-def fit_table(trial: Trial, found: Sequence[Estimate]) -> dict[str, Any]:
+def fit_table(trial: FittedModel, found: Sequence[Estimate]) -> dict[str, Any]:
     """Fitted parameters with intervals, starts, bounds hit and those the data cannot identify."""
     model = trial.fit.model
     meanings = {p.name: p.meaning for p in model.parameters}
@@ -434,7 +434,7 @@ def _finite(value: float) -> float | None:
 
 
 def added_effects(
-    verdict: Verdict, after: Trial, intervals: Mapping[str, Estimate]
+    verdict: Verdict, after: FittedModel, intervals: Mapping[str, Estimate]
 ) -> list[dict[str, Any]]:
     """The named effects of the trial `after`, with the `intervals` of their parameters."""
     units = after.fit.model.units
@@ -476,7 +476,7 @@ def ranking(
         if t.candidates
     ]
     best = [t for t in ranked(trials) if np.isfinite(t.fit.cost)]
-    kept: dict[tuple[str, ...], Trial] = {}
+    kept: dict[tuple[str, ...], FittedModel] = {}
     for trial in best:
         kept.setdefault(trial.keys, found.compared if trial.keys == found.compared.keys else trial)
     rows = [_row(search, found, trial) for trial in kept.values()]
@@ -488,7 +488,7 @@ def ranking(
     return rows + [_unfitted(search, own) for own in forms.values()]
 
 
-def _row(search: Search, found: Verdict, trial: Trial) -> dict[str, Any]:
+def _row(search: Search, found: Verdict, trial: FittedModel) -> dict[str, Any]:
     accepted = bool(found.final.candidates) and trial.keys == found.final.keys
     elsewhere = accepted and found.is_along_motion  # that fit is not the best one of outputs
     earned = None if elsewhere else gain(trial, search.declared)
@@ -496,7 +496,7 @@ def _row(search: Search, found: Verdict, trial: Trial) -> dict[str, Any]:
 
 
 def ranking_row(
-    added: Sequence[Candidate], trial: Trial, earned: Gain | None, accepted: bool, why: str
+    added: Sequence[Candidate], trial: FittedModel, earned: Gain | None, accepted: bool, why: str
 ) -> dict[str, Any]:
     """A row of the ranking for a trial with the effects `added`; without figures where it failed.
     The error is in counts where an angle is counted, else in its unit.
@@ -539,7 +539,7 @@ def _unfitted(search: Search, forms: Sequence[Candidate]) -> dict[str, Any]:
     }
 
 
-def _why(search: Search, found: Verdict, trial: Trial) -> str:
+def _why(search: Search, found: Verdict, trial: FittedModel) -> str:
     if found.final.candidates and trial.keys == found.final.keys:
         if found.is_along_motion:
             return "every effect in it is significant in the torque along the measured motion"

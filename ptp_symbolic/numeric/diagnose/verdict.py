@@ -18,6 +18,13 @@ from ptp_symbolic.numeric.diagnose.confirm import (
     simplest_alternative,
     smaller_alternative,
 )
+from ptp_symbolic.numeric.diagnose.fitted_model import (
+    FittedModel,
+    SearchProblem,
+    fitted,
+    halving,
+    ranked,
+)
 from ptp_symbolic.numeric.diagnose.gain import (
     Gain,
     held_out_fit,
@@ -35,13 +42,13 @@ from ptp_symbolic.numeric.diagnose.groups import (
 )
 from ptp_symbolic.numeric.diagnose.noise_floor import (
     NoiseFloor,
-    carried_noise,
     exceeds_usual_noise,
     fitted_to_every_sample,
     leaves_noise_alone,
     leaves_white_noise,
     noise_floor_of,
     normalised_residual,
+    propagated_input_noise,
 )
 from ptp_symbolic.numeric.diagnose.refits import (
     beside_declared,
@@ -58,7 +65,6 @@ from ptp_symbolic.numeric.diagnose.stepwise import (
     looked_at,
     step_of,
 )
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving, ranked
 from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, FALSE_ALARM, MOST
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.run import sizes
@@ -85,14 +91,14 @@ class Verdict:
     """
 
     word: str
-    final: Trial
+    final: FittedModel
     estimated: Fit
-    compared: Trial
-    declared: Trial
+    compared: FittedModel
+    declared: FittedModel
     gains: Mapping[str, Gain]
     confusable: Mapping[str, tuple[str, ...]]
     alternatives: tuple[Alternative, ...]
-    closest: Trial | None
+    closest: FittedModel | None
     refused: Mapping[str, str]
     floor: NoiseFloor
     before: Fit
@@ -121,17 +127,19 @@ def decide(found: Search) -> Verdict:
     quiet = leaves_noise_alone(verdict.final, verdict.floor)
     if verdict.word != PARTLY or not quiet or not np.any(verdict.floor.largest > 1.0):
         return verdict
-    return _decided(replace(found, task=replace(found.task, white=True)))
+    return _decided(replace(found, problem=replace(found.problem, white=True)))
 
 
 def _decided(found: Search) -> Verdict:
-    """The verdict, with noise as white as the task of the search says."""
-    task = found.task
+    """The verdict, with noise as white as the problem of the search says."""
+    problem = found.problem
     refused = Refusals()
-    stepwise = StepwiseSearch(task, found.declared, found.proposals, found.carried, found.tried)
+    stepwise = StepwiseSearch(
+        problem, found.declared, found.proposals, found.propagated, found.tried
+    )
     stepwise.follow(found.chosen)
     trial, steps, alternatives = _settled(stepwise, found.chosen, list(found.members), refused)
-    task.progress("fitting every sample, and simulating the validation runs")
+    problem.progress("fitting every sample, and simulating the validation runs")
     declared, *final = _to_every_sample(found, trial)
     sets = _along_motion(stepwise, trial, declared, sorted(refused.contradicting))
     near = _near_floor(stepwise, sets)
@@ -147,15 +155,15 @@ def _decided(found: Search) -> Verdict:
     return _judged(found, declared, sets, refused)
 
 
-def _to_every_sample(found: Search, trial: Trial) -> list[Trial]:
+def _to_every_sample(found: Search, trial: FittedModel) -> list[FittedModel]:
     """The declared model, and a trial with candidates, fitted to every sample."""
     known = [found.declared, trial] if trial.candidates else [found.declared]
-    return fitted_to_every_sample(found.task, known)
+    return fitted_to_every_sample(found.problem, known)
 
 
 def _settled(
-    stepwise: StepwiseSearch, chosen: Trial, members: list[Step], refused: Refusals
-) -> tuple[Trial, list[Step], list[Alternative]]:
+    stepwise: StepwiseSearch, chosen: FittedModel, members: list[Step], refused: Refusals
+) -> tuple[FittedModel, list[Step], list[Alternative]]:
     """What is confirmed of a chosen set, or of one that predicts better, or as well and is simpler,
     without what the validation runs reject; its steps, and its alternatives. Everything else is
     noted in `refused` with the reason.
@@ -164,7 +172,7 @@ def _settled(
     alternatives: list[Alternative] = []
     while trial.candidates:
         alternatives = refitted_alternatives(stepwise, trial, fit)
-        better = better_alternative(trial, alternatives, stepwise.task.material)
+        better = better_alternative(trial, alternatives, stepwise.problem.material)
         if better is not None:
             stepwise.tried.others.append(trial)
             trial, steps, fit = confirmed(
@@ -181,11 +189,11 @@ def _settled(
         trial, steps, fit, alternatives = simplest_alternative(
             stepwise, trial, steps, fit, alternatives
         )
-        floor = noise_floor_of(stepwise.task, trial, stepwise.carried)
+        floor = noise_floor_of(stepwise.problem, trial, stepwise.propagated)
         step = ambiguous_value(trial, steps, confusable(trial, alternatives), floor)
         why = "alternatives predict as well, and the residual exceeds the noise"
         if step is None:
-            step = rejected_on_validation(stepwise.task, trial, steps)
+            step = rejected_on_validation(stepwise.problem, trial, steps)
             why = "the validation runs are predicted significantly better without it"
         if step is None:
             break
@@ -201,8 +209,8 @@ class _Set:
     those of `final`.
     """
 
-    compared: Trial
-    final: Trial
+    compared: FittedModel
+    final: FittedModel
     estimated: Fit | None
     gains: Mapping[str, Gain]
     confusable: Mapping[str, tuple[str, ...]]
@@ -210,45 +218,52 @@ class _Set:
 
 
 def _along_motion(
-    stepwise: StepwiseSearch, trial: Trial, declared: Trial, contradicting: Sequence[str]
+    stepwise: StepwiseSearch,
+    trial: FittedModel,
+    declared: FittedModel,
+    contradicting: Sequence[str],
 ) -> list[_Set]:
     """Where the residual of a trial exceeds the noise, the set to which it is extended along the
     measured motion; `contradicting` as in `extended_along_motion`.
     """
-    task = stepwise.task
-    if leaves_noise_alone(trial, noise_floor_of(task, trial, stepwise.carried)):
+    problem = stepwise.problem
+    if leaves_noise_alone(trial, noise_floor_of(problem, trial, stepwise.propagated)):
         return []
-    found = extended_along_motion(task, stepwise.proposals, trial, declared.fit.runs, contradicting)
+    found = extended_along_motion(
+        problem, stepwise.proposals, trial, declared.fit.runs, contradicting
+    )
     if found is None:
         return []
     final = found.trial
-    compared = fitted(task, final.candidates, final.values, None, executor=task.executor)
+    compared = fitted(problem, final.candidates, final.values, None, executor=problem.executor)
     return [_Set(compared, final, found.fit, found.gains, found.alternatives, ())]
 
 
-def _near_floor(stepwise: StepwiseSearch, sets: Sequence[_Set]) -> Trial | None:
+def _near_floor(stepwise: StepwiseSearch, sets: Sequence[_Set]) -> FittedModel | None:
     """A set found along the motion, fitted to the outputs from there, where their residual comes
     near the noise floor: nothing hides it in them then, they determine its values better, and judge
     it as any other. None where they do not.
     """
-    begun = [fitted(stepwise.task, s.final.candidates, s.final.values, None) for s in sets]
-    near = [t for t in halving(stepwise.task, begun, 1) if is_near_noise_floor(t)]
+    begun = [fitted(stepwise.problem, s.final.candidates, s.final.values, None) for s in sets]
+    near = [t for t in halving(stepwise.problem, begun, 1) if is_near_noise_floor(t)]
     return stepwise.polished(near[0]) if near else None
 
 
-def _judged(found: Search, declared: Trial, sets: Sequence[_Set], refused: Refusals) -> Verdict:
+def _judged(
+    found: Search, declared: FittedModel, sets: Sequence[_Set], refused: Refusals
+) -> Verdict:
     """The verdict for the first of `sets` that the validation runs bear out, or for none."""
-    task = found.task
-    before = held_out_fit(task, declared)
+    problem = found.problem
+    before = held_out_fit(problem, declared)
     for one in (*sets, _Set(found.declared, declared, None, {}, {}, ())):
         final = one.final
-        after = held_out_fit(task, final) if final.candidates else before
+        after = held_out_fit(problem, final) if final.candidates else before
         held_out = held_out_gain(after, before) if final.candidates else None
-        estimated = one.estimated or estimable(final.fit, task.input_noise, task.executor)
-        floor, quiet = _floor_and_quiet(task, final, after, estimated)
+        estimated = one.estimated or estimable(final.fit, problem.input_noise, problem.executor)
+        floor, quiet = _floor_and_quiet(problem, final, after, estimated)
         at_noise = leaves_noise_alone(final, floor)
         unusual = at_noise and exceeds_usual_noise(final, floor)
-        if held_out is None or is_validated(held_out, quiet, unusual, task.material):
+        if held_out is None or is_validated(held_out, quiet, unusual, problem.material):
             break
         why = "reduces the error of the validation runs too little, or not significantly"
         for key in final.keys:
@@ -274,25 +289,25 @@ def _judged(found: Search, declared: Trial, sets: Sequence[_Set], refused: Refus
 
 
 def _floor_and_quiet(
-    task: Task, final: Trial, after: Fit, estimated: Fit
+    problem: SearchProblem, final: FittedModel, after: Fit, estimated: Fit
 ) -> tuple[NoiseFloor, bool]:
     """The floor of the final model, and whether its validation runs `after` show noise alone, with
     some values in the joint confidence region of the `estimated` ones.
     """
-    floor = noise_floor_of(task, final, carried_noise(task, final.fit))
-    here = replace(floor, carried=carried_noise(task, after))
-    left = left_by_best_values(after, estimated, here.level, task.executor)
+    floor = noise_floor_of(problem, final, propagated_input_noise(problem, final.fit))
+    here = replace(floor, propagated=propagated_input_noise(problem, after))
+    left = left_by_best_values(after, estimated, here.level, problem.executor)
     return floor, is_noise_alone(left, sizes(after.runs), here, final.fit)
 
 
-def _closest(found: Search) -> Trial | None:
+def _closest(found: Search) -> FittedModel | None:
     """The best trial with any candidate."""
     trials = [t for t in (found.chosen, *found.tried.others) if t.candidates]
     best = ranked([found.declared, *trials])
     return next((t for t in best if t.candidates and np.isfinite(t.fit.cost)), None)
 
 
-def word_of(trial: Trial, named: Mapping[str, tuple[str, ...]], quiet: bool) -> str:
+def word_of(trial: FittedModel, named: Mapping[str, tuple[str, ...]], quiet: bool) -> str:
     """The word for a confirmed set whose residual is noise alone (`quiet`) in all runs, or not."""
     if not trial.candidates:
         return NOTHING_MISSING if quiet else UNEXPLAINED
@@ -320,7 +335,7 @@ def reasons(found: Search, verdict: Verdict, compared: int) -> list[dict[str, An
         tests = _tests(found, verdict.compared, candidate, compared)
         rows += _of_effect(found, verdict, candidate, tests)
     if verdict.held_out is not None:
-        least = MOST if verdict.leaves_more else found.task.material
+        least = MOST if verdict.leaves_more else found.problem.material
         rows.append(_row(None, VALIDATED, verdict.held_out.share, "at_least", least))
     most = verdict.floor.most
     for text, fit in ((TRAINING, verdict.final.fit), (VALIDATION, verdict.after)):
@@ -336,24 +351,24 @@ def _of_effect(
     least = MOST if verdict.leaves_more else 0.0
     chance = _chance(gain, verdict.compared, candidate.vanishing)
     return [
-        _row(key, SHARE, gain.share, "at_least", found.task.material),
+        _row(key, SHARE, gain.share, "at_least", found.problem.material),
         _row(key, CERTAIN, gain.lower, "at_least", least),
         _row(key, CHANCE, chance, "at_most", FALSE_ALARM / tests),
         _row(key, ALIKE, len(verdict.confusable[key]), "at_most", 0),
     ]
 
 
-def _chance(gain: Gain, trial: Trial, vanishing: Mapping[str, float]) -> float:
+def _chance(gain: Gain, trial: FittedModel, vanishing: Mapping[str, float]) -> float:
     """The smallest chance of three tests, times three."""
     by_values = p_value(trial, vanishing) if vanishing else 1.0
     return min(1.0, 3.0 * min(by_values, gain.chance, gain.by_rank))
 
 
-def _tests(found: Search, trial: Trial, candidate: Candidate, compared: int) -> int:
+def _tests(found: Search, trial: FittedModel, candidate: Candidate, compared: int) -> int:
     """How many were looked at: structures have no value at which they vanish."""
     if not candidate.vanishing:
         return max(compared, 1)
-    return max(looked_at(found.task.candidates, [candidate]), 1)
+    return max(looked_at(found.problem.candidates, [candidate]), 1)
 
 
 def _row(about: str | None, rule: str, value: float, side: str, limit: float) -> dict[str, Any]:
@@ -373,23 +388,23 @@ def with_declared_over_windows(found: Search) -> Search:
     ended before that and its residual exceeds white noise: gains are those over the best fit of the
     declared model.
     """
-    task = found.task
+    problem = found.problem
     if (
         found.is_over_windows
-        or not task.windows
-        or leaves_white_noise(found.declared, found.carried)
+        or not problem.windows
+        or leaves_white_noise(found.declared, found.propagated)
     ):
         return found
-    task.progress("fitting the declared model over windows")
-    part, after = fitted_over_windows(replace(task, candidates=()), found.proposals)
-    if [run.name for run in part.train] != [run.name for run in task.train]:
-        after = refitted_in(task, after)
+    problem.progress("fitting the declared model over windows")
+    part, after = fitted_over_windows(replace(problem, candidates=()), found.proposals)
+    if [run.name for run in part.train] != [run.name for run in problem.train]:
+        after = refitted_in(problem, after)
     best = better_over_same_runs(found.declared, after)
     if best is found.declared:
         return replace(found, is_over_windows=True)
     chosen = found.chosen if found.chosen.candidates else best
     if chosen.candidates:
-        chosen = beside_declared(task, chosen, best, found.carried)
+        chosen = beside_declared(problem, chosen, best, found.propagated)
     members = tuple(
         step_of(chosen, s.candidate, s.without if s.without.candidates else best)
         for s in found.members

@@ -277,8 +277,8 @@ def _errors_grow(
     executor: Executor | None,
 ) -> list[bool]:
     """Which runs `cut_where_errors_grow` cuts."""
-    carried = propagated_noise(model, runs, z, p, declared_noise, executor)
-    grows = np.any((carried > 1.0) & (left < TUNING * carried), axis=1)
+    propagated = propagated_noise(model, runs, z, p, declared_noise, executor)
+    grows = np.any((propagated > 1.0) & (left < TUNING * propagated), axis=1)
     grows |= list((executor.map if executor else map)(lambda run: _rattles(model, run, p), runs))
     return [bool(one) for one in grows]
 

@@ -5,15 +5,15 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose.trial import TUNING, Trial, deviances, ranked
+from ptp_symbolic.numeric.diagnose.fitted_model import TUNING, FittedModel, deviances, ranked
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
 
 WAVE = np.where(np.arange(60) % 2, 1.0, -1.0)
 
 
-def trial(residuals: Sequence[Floats]) -> Trial:
-    return Trial((), finished(residuals))
+def trial(residuals: Sequence[Floats]) -> FittedModel:
+    return FittedModel((), finished(residuals))
 
 
 def test_a_misfit_is_the_logarithm_of_the_mean_square_of_every_signal() -> None:

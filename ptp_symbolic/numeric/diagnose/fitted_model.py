@@ -69,7 +69,7 @@ Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True, eq=False)
-class Task:
+class SearchProblem:
     """What stays the same through a diagnosis.
 
     `whole` are the training runs as they were logged, `every_sample` the same or their windows, and
@@ -106,7 +106,7 @@ class Task:
 
     @property
     def evidence_parts(self) -> tuple[Any, ...]:
-        """What recorded evaluations of a task depend on, unless they are given more."""
+        """What recorded evaluations of a problem depend on, unless they are given more."""
         runs = self.train, self.every_sample
         noise = self.input_noise, self.declared_noise
         return self.model, runs, self.fixed, noise, self.resolution, self.robust_below
@@ -118,7 +118,7 @@ class Task:
 
 
 @dataclass(frozen=True, eq=False)
-class Trial:
+class FittedModel:
     """A set of candidates and the fit with their parameters free."""
 
     candidates: tuple[Candidate, ...]
@@ -146,10 +146,10 @@ def forms_of(candidates: Sequence[Candidate]) -> tuple[tuple[str, int], ...]:
 
 
 def all_free(
-    task: Task, candidates: Sequence[Candidate], values: Mapping[str, float]
+    problem: SearchProblem, candidates: Sequence[Candidate], values: Mapping[str, float]
 ) -> tuple[FreeParameter, ...]:
     """The declared free parameters and those of `candidates`, started at `values`."""
-    every = (*task.free, *(f for c in candidates for f in c.free))
+    every = (*problem.free, *(f for c in candidates for f in c.free))
     return tuple(restarted(f, values[f.name]) for f in every)
 
 
@@ -162,7 +162,7 @@ def restarted(free: FreeParameter, value: float) -> FreeParameter:
 
 
 def fitted(
-    task: Task,
+    problem: SearchProblem,
     candidates: Sequence[Candidate],
     values: Mapping[str, float],
     z: Sequence[FloatArray] | None,
@@ -173,7 +173,7 @@ def fitted(
     block: float = np.inf,
     executor: Executor | None = None,
     earlier: Fit | None = None,
-) -> Trial:
+) -> FittedModel:
     """Fit from `values` (all parameters of the model) and the starts `z`, each [nz], of the runs.
 
     `secants` is the step of the differences that replace derivatives which mislead; those that
@@ -181,15 +181,17 @@ def fitted(
     ends a fit, with straight steps. The robust loss weighs blocks of `block` s. Values out of
     bounds are projected; an `earlier` fit that ended where this begins is not simulated again.
     """
-    free = all_free(task, candidates, values)
+    free = all_free(problem, candidates, values)
     names = {name for f in free for name in f.names}
-    fixed = {name: value for name, value in task.fixed.items() if name not in names}
-    tolerance = tolerance_for(task, share)
-    below, straight = task.robust_below, share < ROUGH
+    fixed = {name: value for name, value in problem.fixed.items() if name not in names}
+    tolerance = tolerance_for(problem, share)
+    below, straight = problem.robust_below, share < ROUGH
     effort = Effort(iterations, MATERIAL * share, tolerance, secants, block, below, straight)
     known = None if secants is None else _inherited(parent, free)
-    fit = fit_parameters(task.model, task.train, free, fixed, z, effort, executor, known, earlier)
-    return Trial(tuple(candidates), fit)
+    fit = fit_parameters(
+        problem.model, problem.train, free, fixed, z, effort, executor, known, earlier
+    )
+    return FittedModel(tuple(candidates), fit)
 
 
 def _inherited(parent: Fit | None, free: Sequence[FreeParameter]) -> list[tuple[int, int]] | None:
@@ -205,25 +207,25 @@ def _inherited(parent: Fit | None, free: Sequence[FreeParameter]) -> list[tuple[
     return found + [(run, k) for run in range(len(parent.runs)) for k in fresh]
 
 
-def tolerance_for(task: Task, share: float) -> Tolerance:
+def tolerance_for(problem: SearchProblem, share: float) -> Tolerance:
     """Integration tolerance that keeps angles good to a `share` of their noise: a coarser one makes
     the deviance jump wherever friction breaks away a sample later.
     """
-    return Tolerance.for_resolution(task.resolution, share)
+    return Tolerance.for_resolution(problem.resolution, share)
 
 
 def continued(
-    task: Task,
-    trial: Trial,
+    problem: SearchProblem,
+    trial: FittedModel,
     iterations: int,
     share: float = ROUGH,
     secants: float | None = None,
     executor: Executor | None = None,
     z: Sequence[FloatArray] | None = None,
-) -> Trial:
+) -> FittedModel:
     """Fit a trial on, from other starts `z` of its runs if given; a worse end is not taken."""
     new = fitted(
-        task,
+        problem,
         trial.candidates,
         trial.values,
         trial.fit.z if z is None else z,
@@ -241,37 +243,39 @@ def continued(
 
 
 def simulated(
-    task: Task, fit: Fit, values: Mapping[str, float], executor: Executor | None
+    problem: SearchProblem, fit: Fit, values: Mapping[str, float], executor: Executor | None
 ) -> list[Evaluation]:
     """All runs of `fit` with `values` in place of its own, without Jacobians. Raises InputError for
     values out of bounds.
     """
-    p, none = task.model.parameter_vector({**fit.values, **values}), np.zeros(0, dtype=np.int64)
-    tolerance = tolerance_for(task, ROUGH)
+    p, none = problem.model.parameter_vector({**fit.values, **values}), np.zeros(0, dtype=np.int64)
+    tolerance = tolerance_for(problem, ROUGH)
 
     def one(pair: tuple[Run, FloatArray]) -> Evaluation:
-        return evaluate(task.model, pair[0], p, pair[1], none, False, tolerance)
+        return evaluate(problem.model, pair[0], p, pair[1], none, False, tolerance)
 
     run = executor.map if executor else map
     return list(run(one, zip(fit.runs, fit.z, strict=True)))
 
 
-def simulated_at(task: Task, fit: Fit, values: Mapping[str, float]) -> Sequence[Evaluation]:
+def simulated_at(
+    problem: SearchProblem, fit: Fit, values: Mapping[str, float]
+) -> Sequence[Evaluation]:
     """See `simulated`: of which the mean squares are recorded."""
 
     def made() -> list[Evaluation]:
-        return simulated(task, fit, values, task.executor)
+        return simulated(problem, fit, values, problem.executor)
 
     if not is_recording():
         return made()
-    key = key_of("simulated", task, fit, values)
+    key = key_of("simulated", problem, fit, values)
     found = stored(key, made, lambda every: mean_squares(every, fit.runs))
     if found.made is None:
         return Deferred(key, len(fit.runs), made, found.light)
     return Deferred(key, len(fit.runs), None, found.light, found.made)
 
 
-def deviances(trials: Sequence[Trial]) -> list[float]:
+def deviances(trials: Sequence[FittedModel]) -> list[float]:
     """One number per trial to rank them by: n log(mean square), summed over the signals, so that no
     signal outweighs another by its unit (likelihood with unknown variances: Bard, 1974, 4.9).
     Residuals are known to no better than the error of simulations (`ROUGH`).
@@ -293,45 +297,45 @@ def deviances(trials: Sequence[Trial]) -> list[float]:
     return result
 
 
-def ranked(trials: Sequence[Trial]) -> list[Trial]:
+def ranked(trials: Sequence[FittedModel]) -> list[FittedModel]:
     """Trials, the best fit first; of equal sets the best alone."""
     if not trials:
         return []
     cost = deviances(trials)
     order = sorted(range(len(trials)), key=lambda k: cost[k])
-    best: dict[tuple[tuple[str, int], ...], Trial] = {}
+    best: dict[tuple[tuple[str, int], ...], FittedModel] = {}
     for k in order:
         best.setdefault(forms_of(trials[k].candidates), trials[k])
     return list(best.values())
 
 
-def is_near(trial: Trial, others: Sequence[Trial]) -> bool:
+def is_near(trial: FittedModel, others: Sequence[FittedModel]) -> bool:
     """Whether the mean square residual of a trial is at most e times that of the best of others."""
     cost = deviances([trial, *others])
     return cost[0] - min(cost) <= sum(run.size for run in trial.fit.runs)
 
 
-def is_same_end(trial: Trial, other: Trial) -> bool:
+def is_same_end(trial: FittedModel, other: FittedModel) -> bool:
     """Whether two trials of one set have the same deviance, so that they ended at one optimum."""
     cost = deviances([trial, other])
     return abs(cost[0] - cost[1]) < LITTLE * sum(run.size for run in trial.fit.runs)
 
 
 def halving(
-    task: Task,
-    trials: Sequence[Trial],
+    problem: SearchProblem,
+    trials: Sequence[FittedModel],
     *rungs: int,
-    seen: list[Trial] | None = None,
+    seen: list[FittedModel] | None = None,
     iterations: int = ITERATIONS,
-) -> list[Trial]:
+) -> list[FittedModel]:
     """Successive halving (Jamieson and Talwalkar, 2016): every rung gives the trials that are left
     some iterations, side by side, and keeps so many of them; the others end up in `seen`.
     """
     left = list(trials)
 
-    def go_on(trial: Trial) -> Trial:
+    def go_on(trial: FittedModel) -> FittedModel:
         secants = None if trial.fit.misleading is None else WIDE_STEP
-        return continued(task, trial, iterations, secants=secants, executor=task.executor)
+        return continued(problem, trial, iterations, secants=secants, executor=problem.executor)
 
     for kept in rungs:
         further = side_by_side(go_on, left)
