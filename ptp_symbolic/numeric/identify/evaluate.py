@@ -342,7 +342,6 @@ def evaluate(
         s if tangents else None,
         columns,
         delay_columns(model, columns),
-        lean=True,
         rough_tangents=True,
     )
     r, j = np.zeros(run.size), np.zeros((run.size, found.s.shape[2]))

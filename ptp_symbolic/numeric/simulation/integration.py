@@ -31,7 +31,6 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     Tangents,
     Watch,
 )
-from ptp_symbolic.numeric.simulation.kernels.specialised import specialised, zeros_of
 from ptp_symbolic.numeric.simulation.methods.exponential_step import new_propagator
 from ptp_symbolic.numeric.simulation.methods.rosenbrock import STAGES
 from ptp_symbolic.numeric.simulation.methods.steps import ROSENBROCK, RUNGE_KUTTA
@@ -312,7 +311,6 @@ def integrate(
     delay_column: IntArray | None = None,
     ledger: bool = False,
     event_room: int = 0,
-    lean: bool = False,
     rough_tangents: bool = False,
 ) -> Solution:
     """Integrate `model` at p [np] from the first to the last of `stops` in s, from x [n] with
@@ -321,9 +319,8 @@ def integrate(
     `held`: inputs are zero-order hold, with jumps at stops only; those that samplers alone read
     need not be. With tangents, output times must be stops. The first tangents are by the parameters
     `columns`; `delay_column` [nu] is per input the tangent of its delay, or -1. States that act on
-    nothing (see `Model.acting`) stand still under the implicit method. `lean`: so are the terms of
-    effects at their vanishing values left out (see `kernels.specialised`). `rough_tangents`:
-    good to some thousandths is enough, so that exponential steps may carry them (see
+    nothing (see `Model.acting`) stand still under the implicit method. `rough_tangents`: good to
+    some thousandths is enough, so that exponential steps may carry them (see
     `methods.exponential_tangents`).
 
     Without a `method` it is the one that suits the model, and the implicit one where the explicit
@@ -347,7 +344,6 @@ def integrate(
             delay_column,
             ledger,
             event_room,
-            lean,
             rough_tangents,
         )
 
@@ -396,7 +392,6 @@ def _integrate(
     delay_column: IntArray | None,
     ledger: bool,
     event_room: int,
-    lean: bool,
     rough_tangents: bool,
 ) -> Solution:
     """One run, as `integrate` has it."""
@@ -435,9 +430,6 @@ def _integrate(
     acting = model.acting(p, columns)
     if method == IMPLICIT:
         solved = min(solved, acting)
-    if lean:
-        zeros = zeros_of(x, acting, p, c, columns)
-        functions = specialised(module).addresses(zeros, len(stops))
     x, u, cursor = x.copy(), np.zeros((3, nu)), inputs.new_cursor()
     watch = new_watch(model, n, p)
     hybrid.evaluate_inputs(stops[0], 1, *inputs.arrays, cursor, u[0])
@@ -448,8 +440,7 @@ def _integrate(
     sampled = len(model.sampler_periods) > 0
     whole = method == IMPLICIT and stands_still and not ledger and not sampled
     whole = whole and (rough_tangents or not s.shape[1]) and not np.any(tangents.delay_column >= 0)
-    # A search, which leaves out zeros too, calls for tangents sooner or later: one runner will do.
-    lean_runner = method == IMPLICIT and not (s.shape[1] or sampled or lean)
+    lean_runner = method == IMPLICIT and not (s.shape[1] or sampled)
     status = hybrid.runner(sampled, lean_runner)(
         METHODS[method],
         loop_address() if whole else 0,
