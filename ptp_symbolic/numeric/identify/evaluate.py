@@ -6,8 +6,10 @@ the motion and the input before as if it had settled there: the reduced model of
 and a joint that slides would start a little behind.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numba import njit, types
@@ -41,6 +43,8 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
 
 FloatArray = NDArray[np.float64]
 
+LITTLE_LEFT = math.log(SAME)  # of what a state was that has been forgotten
+
 
 def settle(
     model: Model,
@@ -57,35 +61,84 @@ def settle(
     so that sensors go on showing what they did: behind a filter an encoder that turns lags. A run
     that is no window and begins at rest begins as it does.
     """
-    if (run.before is None and not _moves(model, run)) or not (hidden := _hidden(model, run)):
+    if (run.before is None and not _moves(model, run)) or not len(hidden := _hidden(model, run)):
         return
     u = run.held_inputs[0] if run.before is None else run.before
-    n, t = len(x), float(run.time[0])
-    m, dx = np.zeros(len(model.mode_names)), np.zeros(n)
+    t, m, dx = float(run.time[0]), np.zeros(len(model.mode_names)), np.zeros(len(x))
     model.module.initial_modes(t, x, u, p, m)
-    fx = model.derivatives(t, x, u, p, m).fx
-    slopes = _reading_slopes(model, run, p, x)
-    of_sensors = np.any(slopes[list(run.outputs)], axis=0) & (np.diag(fx) < 0.0)
-    fast = [k for k in hidden if of_sensors[k] or fx[k, k] * FORGOTTEN < np.log(SAME)]
-    if not fast:
+    here = model.derivatives(t, x, u, p, m)
+    slopes = _reading_slopes(model, run, p, x)[run.outputs]
+    fast = _fast(here.fx, slopes, hidden)
+    if not len(fast):
         return
     model.module.mode_derivative(t, x, u, p, m, dx)
-    moved, earlier = -np.linalg.solve(fx[fast][:, fast], dx[fast]), s[fast].copy()
-    x[fast] += moved
     encoders = _encoders(model, run)
-    for column, angles in encoders:
-        by_state = slopes[run.outputs[column]]
-        x[angles] -= by_state[fast] @ moved / by_state[angles[0]]
-    if not s.shape[1]:
-        return
-    there = model.derivatives(t, x, u, p, m)
-    own, s[fast] = there.fx[fast][:, fast], 0.0
-    change = there.fx[fast] @ s
-    change[:, : len(columns)] += there.fp[fast][:, columns]
-    s[fast] = -np.linalg.solve(own, change)
-    for column, angles in encoders:
-        by_state = slopes[run.outputs[column]]
-        s[angles] -= by_state[fast] @ (s[fast] - earlier) / by_state[angles[0]]
+    _settle_state(here.fx, dx, fast, slopes, encoders, x)
+    if s.shape[1]:
+        there = model.derivatives(t, x, u, p, m)
+        _settle_tangents(there.fx, there.fp, fast, columns, slopes, encoders, s)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _fast(fx, slopes, hidden):
+    """Those of the `hidden` states that are forgotten soon, or that a reading depends on."""
+    found, count = np.zeros(len(hidden), np.int64), 0
+    for k in hidden:
+        is_read = False
+        for row in range(len(slopes)):
+            is_read = is_read or slopes[row, k] != 0.0
+        if (is_read and fx[k, k] < 0.0) or fx[k, k] * FORGOTTEN < LITTLE_LEFT:
+            found[count] = k
+            count += 1
+    return found[:count]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _of_each_other(fx, fast):
+    """Derivatives of the rates of `fast` states by each other."""
+    own = np.zeros((len(fast), len(fast)))
+    for i in range(len(fast)):
+        for j in range(len(fast)):
+            own[i, j] = fx[fast[i], fast[j]]
+    return own
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _settle_state(fx, dx, fast, slopes, encoders, x):
+    """Put `fast` states where their rates dx are zero, and angles where sensors show the same."""
+    moved = -np.linalg.solve(_of_each_other(fx, fast), dx[fast])
+    x[fast] += moved
+    for row, joint, gear in encoders:
+        shift = 0.0
+        for i in range(len(fast)):
+            shift += slopes[row, fast[i]] * moved[i] / slopes[row, joint]
+        x[joint] -= shift
+        if gear >= 0:
+            x[gear] -= shift
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _settle_tangents(fx, fp, fast, columns, slopes, encoders, s):
+    """Put the tangents s of `fast` states where their rates stay zero, those of angles as above."""
+    n, ns = s.shape
+    earlier, change = s[fast], np.zeros((len(fast), ns))
+    s[fast] = 0.0
+    for i in range(len(fast)):
+        for c in range(ns):
+            total = fp[fast[i], columns[c]] if c < len(columns) else 0.0
+            for a in range(n):
+                total += fx[fast[i], a] * s[a, c]
+            change[i, c] = total
+    now = -np.linalg.solve(_of_each_other(fx, fast), change)
+    s[fast] = now
+    for row, joint, gear in encoders:
+        for c in range(ns):
+            shift = 0.0
+            for i in range(len(fast)):
+                shift += slopes[row, fast[i]] * (now[i, c] - earlier[i, c]) / slopes[row, joint]
+            s[joint, c] -= shift
+            if gear >= 0:
+                s[gear, c] -= shift
 
 
 def _moves(model: Model, run: Run) -> bool:
@@ -105,29 +158,43 @@ def _reading_slopes(model: Model, run: Run, p: FloatArray, x: FloatArray) -> Flo
     return yx
 
 
-def _encoders(model: Model, run: Run) -> list[tuple[int, list[int]]]:
-    """Columns of `run` that are encoders, each with the states that are its angle, at the joint and
-    at the gear.
+def _encoders(model: Model, run: Run) -> NDArray[np.int64]:
+    """The columns of `run` that are encoders [e, 3], each with the states that are its angle: at
+    the joint, and at the gear (-1: none).
     """
-    names, found = list(model.state_names), []
-    for column, signal in enumerate(run.signals):
+    return _encoders_among(run.signals, model.state_names)
+
+
+@lru_cache(maxsize=256)
+def _encoders_among(signals: tuple[str, ...], states: tuple[str, ...]) -> NDArray[np.int64]:
+    rows = []
+    for column, signal in enumerate(signals):
         if signal.startswith("theta_"):
-            both = (signal, f"theta_gear_{signal.removeprefix('theta_')}")
-            found.append((column, [names.index(name) for name in both if name in names]))
-    return found
+            gear = f"theta_gear_{signal.removeprefix('theta_')}"
+            behind = states.index(gear) if gear in states else -1
+            rows.append((column, states.index(signal), behind))
+    return np.array(rows, np.int64).reshape(-1, 3)
 
 
-def _hidden(model: Model, run: Run) -> tuple[int, ...]:
+def _hidden(model: Model, run: Run) -> NDArray[np.int64]:
     """States with a differential equation beside the motion that no signal shows, and that friction
     does not set.
     """
-    return tuple(
+    by_friction = tuple(model.zero_at_rest[: model.moving] >= 0)
+    return _hidden_among(run.signals, model.state_names[: model.moving], by_friction)
+
+
+@lru_cache(maxsize=256)
+def _hidden_among(
+    signals: tuple[str, ...], states: tuple[str, ...], by_friction: tuple[bool, ...]
+) -> NDArray[np.int64]:
+    shown = ("theta_", "omega_")
+    rows = [
         k
-        for k, name in enumerate(model.state_names[: model.moving])
-        if not name.startswith(("theta_", "omega_"))
-        and name not in run.signals
-        and model.zero_at_rest[k] < 0
-    )
+        for k, name in enumerate(states)
+        if not name.startswith(shown) and name not in signals and not by_friction[k]
+    ]
+    return np.array(rows, np.int64)
 
 
 @dataclass(frozen=True)
@@ -217,7 +284,12 @@ def _compare(functions, signals, time, x, s, u, p, measured, columns, picked, we
                 j[row, c] = -weight[o] * total_derivative
 
 
+_TABLE = types.int64[:, ::1]
 AHEAD = (
+    (_fast, (MATRIX, MATRIX, INTEGERS)),
+    (_of_each_other, (MATRIX, INTEGERS)),
+    (_settle_state, (MATRIX, VECTOR, INTEGERS, MATRIX, _TABLE, VECTOR)),
+    (_settle_tangents, (MATRIX, MATRIX, INTEGERS, INTEGERS, MATRIX, _TABLE, MATRIX)),
     (
         _compare,
         (
@@ -268,8 +340,8 @@ def _put_behind_sensors(
     """
     n, signals = len(x), len(model.output_names)
     y, yx, yp = np.zeros(signals), np.zeros((signals, n)), np.zeros((signals, len(p)))
-    for column, angle_states in _encoders(model, run):
-        shown = run.outputs[column]
+    for column, joint, gear in _encoders(model, run):
+        shown, angle_states = run.outputs[column], [joint] if gear < 0 else [joint, gear]
         for _ in range(ROUNDS):
             model.module.outputs(run.time[0], x, run.held_inputs[0], p, y)
             error = run.measured[0, column] - y[shown]
@@ -328,7 +400,7 @@ def evaluate(
     columns = columns if tangents else columns[:0]
     x, s = start_state(model, run, p, z, columns)
     late = delays_of(model, p)
-    table = delayed(run.inputs, late)
+    is_late, table = bool(late.any()), delayed(run.inputs, late)
     found = integrate(
         model,
         None,
@@ -336,7 +408,7 @@ def evaluate(
         x,
         table,
         table.held,
-        table.with_stops(run.time) if np.any(late) else run.stops,
+        table.with_stops(run.time) if is_late else run.stops,
         run.time,
         Accuracy(tolerance.relative, tolerance.absolute(model), 1.0),
         s if tangents else None,
@@ -353,7 +425,7 @@ def evaluate(
             run.time,
             found.x,
             found.s,
-            values_at(table, run.time) if np.any(late) else run.held_inputs,
+            values_at(table, run.time) if is_late else run.held_inputs,
             p,
             np.ascontiguousarray(run.measured),
             columns,
@@ -362,7 +434,7 @@ def evaluate(
             r,
             j,
         )
-        if not np.all(np.isfinite(r)):
+        if not np.isfinite(r).all():
             failed = f"{run.name}: not finite"
     split = len(columns)
     end = None if failed else found.x[-1].copy()

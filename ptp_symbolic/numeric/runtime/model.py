@@ -242,10 +242,11 @@ class Model:
         come last.
         """
         count = len(self.state_names)
-        if len(self.sampled):
+        if len(self.sampled) or not self._idle:
             return count
+        asked = set(columns.tolist())
         while count and (off := self._idle.get(self.state_names[count - 1])):
-            if any(p[k] != value or k in columns for k, value in off):
+            if any(k in asked or p[k] != value for k, value in off):
                 break
             count -= 1
         return count

@@ -439,7 +439,7 @@ def _integrate(
     record = new_record(times, n, s.shape[1], len(times) if ledger else 0, event_room)
     sampled = len(model.sampler_periods) > 0
     whole = method == IMPLICIT and stands_still and not ledger and not sampled
-    whole = whole and (rough_tangents or not s.shape[1]) and not np.any(tangents.delay_column >= 0)
+    whole = whole and (rough_tangents or not s.shape[1]) and not (tangents.delay_column >= 0).any()
     lean_runner = method == IMPLICIT and not (s.shape[1] or sampled)
     status = hybrid.runner(sampled, lean_runner)(
         METHODS[method],
