@@ -94,5 +94,6 @@ def nearest(name: str, known: Iterable[str], count: int = 3) -> list[str]:
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
     """Return ": did you mean 'x'?" with the nearest of `known`; empty where none is near."""
-    near = difflib.get_close_matches(name, tuple(known), n=1)
-    return f": did you mean '{near[0]}'?" if near else ""
+    by_word = {other.lower(): other for other in known}
+    near = difflib.get_close_matches(name.lower(), tuple(by_word), n=1)
+    return f": did you mean '{by_word[near[0]]}'?" if near else ""

@@ -8,6 +8,8 @@ import os
 import subprocess
 import sys
 import sysconfig
+import time
+from contextlib import suppress
 from pathlib import Path
 from typing import NoReturn
 
@@ -17,6 +19,7 @@ STAMP = ENVIRONMENT / "ptp-symbolic.stamp"
 PROGRAMS = ENVIRONMENT / ("Scripts" if os.name == "nt" else "bin")
 PYTHON = PROGRAMS / ("python.exe" if os.name == "nt" else "python")
 OLDEST_PYTHON = (3, 11)
+SIGN_OF_LIFE = 30.0  # s
 
 
 def prepare_environment(extras: tuple[str, ...] = ()) -> None:
@@ -76,10 +79,17 @@ def create_environment() -> None:
 
 def install_checkout(extras: list[str]) -> None:
     """Install this checkout with its dependencies into `.venv`; pip prints what goes wrong."""
-    say("Installing ptp-symbolic and what it needs (some minutes, once) ...")
+    say("Installing ptp-symbolic and what it needs, and compiling its kernels (minutes, once) ...")
     target = f"{CHECKOUT}[{','.join(extras)}]" if extras else str(CHECKOUT)
     command = [str(PYTHON), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-    if subprocess.run([*command, "--no-compile", "--editable", target]).returncode != 0:
+    installing = subprocess.Popen([*command, "--no-compile", "--editable", target])
+    begun = time.monotonic()
+    while installing.poll() is None:
+        with suppress(subprocess.TimeoutExpired):
+            installing.wait(SIGN_OF_LIFE)
+            break
+        say(f"  still at it, {time.monotonic() - begun:.0f} s")
+    if installing.returncode != 0:
         leave("pip could not install the package (its message is above): check the network.")
     compile_packages()
 

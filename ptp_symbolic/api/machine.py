@@ -330,7 +330,12 @@ def load(source: Source, *, catalogue_values: bool = False) -> Machine:
         source = platform_of(source)
     from ptp_symbolic.models.emission import emit
 
-    return machine_of(emit(source))
+    machine = machine_of(emit(source))
+    if machine.platform is not None:
+        from ptp_symbolic.models.declared import refuse_unknown_signals
+
+        refuse_unknown_signals(machine.platform, machine)
+    return machine
 
 
 def platform_of(source: Source) -> Platform:
@@ -357,7 +362,8 @@ def _refuse_no_machine(source: object) -> None:
         raise wrong_type(
             "A machine",
             source,
-            "the name of a model or a preset, the path of a platform file, a Platform or a Machine",
+            "the name of a model or a preset, the path of a platform file, a Platform or a Machine"
+            " (it comes first, logs follow)",
         )
 
 

@@ -104,10 +104,11 @@ class FitResult(_Result):
         return _plot(self.output, hidden=("before",) if self.error["before"] is None else ())
 
     def _heading(self) -> str:
-        total = self.error["after"]["total"]
+        own, floor = (self.error[when]["total"] for when in ("after", "noise_floor"))
+        key, unit = ("rmse_counts", "counts") if "rmse_counts" in own else ("rmse", own["unit"])
         return (
-            f"Fit of '{self.summary['platform']['name']}': {total['rmse']:.3g} {total['unit']} rms"
-            f" over {len(self.error['after']['by_run'])} runs"
+            f"Fit of '{self.summary['platform']['name']}': {own[key]:.3g} {unit} rms over"
+            f" {len(self.error['after']['by_run'])} runs, the noise floor is {floor[key]:.3g}"
         )
 
     def _tables(self) -> tuple[Table, ...]:
@@ -334,7 +335,7 @@ def experiment(
     Traceback (most recent call last):
     ptp_symbolic.errors.InputError: `tries` 3: give at least 60.
     """
-    from ptp_symbolic.api.values import state_vector
+    from ptp_symbolic.api.values import initial_vector
     from ptp_symbolic.workflows.experiment_design import Request, design_experiment
     from ptp_symbolic.workflows.experiment_group import group_of
 
@@ -356,7 +357,7 @@ def experiment(
     states: dict[str, float] = {}
     if initial:
         machine = load(declared)
-        vector = state_vector(machine, initial, "Initial state")
+        vector = initial_vector(machine, initial)
         states = {n: float(vector[machine.state_names.index(n)]) for n in initial}
     request = Request(
         tuple(between),

@@ -18,7 +18,7 @@ from ptp_symbolic.api.inputs import (
 )
 from ptp_symbolic.api.machine import Machine, Source, load
 from ptp_symbolic.api.run import Run
-from ptp_symbolic.api.values import Quantity, Values, parameter_values, state_vector
+from ptp_symbolic.api.values import Quantity, Values, initial_vector, parameter_values
 from ptp_symbolic.errors import InputError, names_of, number_of, unknown, wrong_type
 from ptp_symbolic.numeric.simulation import run as numeric
 from ptp_symbolic.numeric.simulation.feedback import Feedback
@@ -67,7 +67,8 @@ def simulate(
 
     `controller(t, y)` is called every `period` s and returns the inputs [nu], one number where
     there is one input, or a mapping by name, which hold until the next call and add to those given;
-    y [m] are the outputs, all states with `feedback` = "states", or what `feedback` names.
+    y [m] are the outputs in the order of `output_names`, all states with `feedback` = "states", or
+    what `feedback` names, in that order.
 
     rtol and atol bound the local error, atol in rad for angles. `method` is "rosenbrock" for stiff
     machines, "runge_kutta" for smooth ones, "fixed_step" for steps of `step` s, None to let the
@@ -94,7 +95,7 @@ def simulate(
     span = _times(machine, times, inputs)
     given = _joined(machine, inputs, by_name, span)
     changed = {**parameter_values(machine, parameters), **own}
-    start = state_vector(machine, initial if x0 is None else x0, "Initial state")
+    start = initial_vector(machine, initial if x0 is None else x0)
     found = numeric.simulate(
         machine,
         span,
@@ -149,7 +150,7 @@ def sensitivity(
         raise InputError("`x0` and `initial` are both the state at the start; give one of them.")
     by_name, own = _sorted(machine, values)
     span = _times(machine, times, inputs)
-    start = state_vector(machine, initial if x0 is None else x0, "Initial state")
+    start = initial_vector(machine, initial if x0 is None else x0)
     return sensitivities.sensitivity(
         machine,
         span,

@@ -1,6 +1,7 @@
 """Values by name, in order, or as texts with units, made into the vectors of a model."""
 
-from collections.abc import Mapping, Sequence
+import warnings
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,6 +21,34 @@ def state_vector(model: Model, given: Values | None, what: str = "State") -> Flo
     Raises InputError for an unknown name, another number of values and what is no quantity.
     """
     return _vector(model, given, model.state_names, model.module.STATE_INITIAL, what)
+
+
+def initial_vector(model: Model, given: Values | None) -> FloatArray:
+    """The states [n] at the start, as `state_vector`; warns of a shaft that begins wound up because
+    the gear output was not given with its joint.
+    """
+    start = state_vector(model, given, "Initial state")
+    if isinstance(given, Mapping):
+        states = dict(zip(model.state_names, start.tolist(), strict=True))
+        for text in wound_up(model, given, states):
+            warnings.warn(text, stacklevel=3)
+    return start
+
+
+def wound_up(model: Model, given: Collection[str], states: Mapping[str, float]) -> list[str]:
+    """A line for every joint whose state was `given` while that of its gear output, which was not,
+    is another; `states` are all those at the start.
+    """
+    lines = []
+    for joint in given:
+        gear = joint.replace("theta_", "theta_gear_").replace("omega_", "omega_gear_")
+        if gear in states and gear not in given and states[gear] != states[joint]:
+            unit = model.units[joint]
+            lines.append(
+                f"{joint} starts at {states[joint]:g} {unit} and {gear} at {states[gear]:g} {unit}:"
+                f" the shaft between them starts wound up. Give {gear} too."
+            )
+    return lines
 
 
 def input_vector(model: Model, given: Values | None) -> FloatArray:

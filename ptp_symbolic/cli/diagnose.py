@@ -104,16 +104,22 @@ def diagnose(
     click.echo(f"Report: {out / 'report.html'}")
 
 
-@click.command()
+@click.command(cls=SeveralValues)
 @click.option("--platform", "source", required=True, help="Platform TOML or packaged name.")
-@click.argument("logs", nargs=-1, required=True)
+@click.argument("logs", nargs=-1)
+@click.option("--train", multiple=True, help="Logs or folders too, as `diagnose` takes them.")
 @click.option("--out", type=Path, required=True, help="Folder for the results.")
 @click.option("--json", "as_json", is_flag=True, help="Print fit.json instead of a table.")
-def fit(source: str, logs: tuple[str, ...], out: Path, as_json: bool) -> None:
+def fit(
+    source: str, logs: tuple[str, ...], train: tuple[str, ...], out: Path, as_json: bool
+) -> None:
     """Fit the free parameters of a platform to logs or folders of logs.
 
     Writes fit.json, and platform.toml with the fitted values as start values.
     """
+    logs = (*logs, *train)
+    if not logs:
+        raise click.UsageError("Missing argument 'LOGS...'.")
     from ptp_symbolic.atomic_files import check_writable, write_files_atomically
     from ptp_symbolic.models.committed import declared_platform
     from ptp_symbolic.workflows.fit import fit_platform

@@ -157,9 +157,10 @@ def initial_states(model: Any, given: Sequence[str]) -> dict[str, float]:
     An angle of more than a turn is pointed out where it has no unit: a joint may have turned as
     often, and degrees look the same. Raises InputError for unknown names and values.
     """
+    from ptp_symbolic.api.values import wound_up
     from ptp_symbolic.platform.units import quantity
 
-    values = {}
+    values: dict[str, float] = {}
     for text in given:
         name, _, value = text.partition("=")
         if name not in model.state_names:
@@ -170,7 +171,10 @@ def initial_states(model: Any, given: Sequence[str]) -> dict[str, float]:
             _note_turns(
                 f"{name} starts at", values[name], unit, f"write degrees as '{name}={value} deg'"
             )
-    return values
+    usual = dict(zip(model.state_names, map(float, model.module.STATE_INITIAL), strict=True))
+    for line in wound_up(model, values, {**usual, **values}):
+        click.echo(f"Note: {line}", err=True)
+    return {**usual, **values}
 
 
 def _note_turns(what: str, value: float, unit: str, advice: str) -> None:

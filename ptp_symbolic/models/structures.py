@@ -108,6 +108,10 @@ def _lacking(platform: Platform, effect: Effect, axis: str | None) -> str | None
                 return f"not tried: {described_by(platform, effect, axis)} describes the same"
             return f"not tried: it acts on {missing}, which no declared effect defines"
         return "not tried: it is declared, never searched for"
+    beside = [e.effect for e in platform.effects if e.axis == axis]
+    excluding = [e for e in effect.structure.excluded_by if e in beside]
+    if excluding:
+        return f"not tried: {' and '.join(excluding)} of this axis leave no place for it"
     missing = _missing(platform, effect.structure.needs, axis)
     if missing:
         return f"not tried: it needs {missing}, which no declared effect defines"

@@ -158,9 +158,9 @@ def _cut_short(allowance: Allowance, effort: float) -> str:
     if allowance.is_out_of_time:
         return (
             f"The search was stopped by the clock after {allowance.seconds:g} s: what it found"
-            " depends on the speed of this machine. Give it a longer `time_limit`."
+            " depends on the speed of this machine. Give it more time, from where it ended."
         )
     return (
         f"The search came to its limit of {allowance.samples:.3g} simulated samples: what it had"
-        f" not tried by then may be found with more `effort` (it was {effort:g})."
+        f" not tried by then may be found with more effort (it was {effort:g})."
     )

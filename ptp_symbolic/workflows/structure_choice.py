@@ -211,17 +211,31 @@ def _at_length(
     terms: Searched,
     searched: Callable[[FittedStructure | None, bool], Searched],
 ) -> tuple[list[Searched], Searched]:
-    """Structures and the declared one, with the whole search in what is best so far, and in the
-    declared one unless that is far behind.
+    """Structures and the declared one, with the whole search in what is best so far, or the
+    simplest that it contains and is not far ahead of: a gap beside a shaft may make up for a term
+    that is missing. And in the declared one unless that is far behind.
     """
     best = _best_fit([terms, *outcomes])
     if best is not terms and not best.is_noise_alone:
-        whole = searched(best.structure, False)
-        outcomes = [whole if s is best else s for s in outcomes]
-        best = whole
+        as_good = [s for s in outcomes if _contains(best, s) and not _is_far_ahead(best, s)]
+        found = min(as_good, key=_size_of, default=best)
+        whole = searched(found.structure, False)
+        outcomes = [whole if s is found else s for s in outcomes]
+        best = _best_fit([best, whole]) if found is not best else whole
     if best is terms or not _is_far_ahead(best, terms):
         terms = searched(None, False)
     return list(outcomes), terms
+
+
+def _contains(one: Searched, other: Searched) -> bool:
+    """Whether the structure of the first is that of the second, and more."""
+    assert one.structure is not None and other.structure is not None
+    return other.structure.provides < one.structure.provides
+
+
+def _size_of(one: Searched) -> int:
+    assert one.structure is not None
+    return len(one.structure.provides)
 
 
 def _best_fit(searches: Sequence[Searched]) -> Searched:

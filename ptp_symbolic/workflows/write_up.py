@@ -55,6 +55,8 @@ TAKEN_OVER = (
 )
 NOT_TRIED = "not tried: "  # begins a reason that lies in the effect, not in the platform
 
+STOPPED = " The search was stopped before its end: the remarks say by what."
+
 
 def written_up(
     platform: Platform,
@@ -99,7 +101,8 @@ def written_up(
         "schema_version": SCHEMA_VERSION,
         "platform": {"name": platform.name, "title": platform.title},
         "verdict": verdict.word,
-        "summary": headline(verdict, errors, sizes_of(after, intervals)),
+        "summary": headline(verdict, errors, sizes_of(after, intervals))
+        + (STOPPED if choice.is_cut_short else ""),
         "fitted_to": "torques" if verdict.is_along_motion else "outputs",
         "added": added,
         "ranking": _ranking(choice),

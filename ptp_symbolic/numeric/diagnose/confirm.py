@@ -36,10 +36,11 @@ from ptp_symbolic.numeric.diagnose.noise_floor import (
     leaves_noise_alone,
     noise_floor_of,
 )
-from ptp_symbolic.numeric.diagnose.refits import expected_gain, forms, without_run
+from ptp_symbolic.numeric.diagnose.refits import forms, without_run
 from ptp_symbolic.numeric.diagnose.regression import block_numbers
 from ptp_symbolic.numeric.diagnose.responses import (
     effect_of,
+    expected_gain,
     projected_off,
     residual_beside,
     stacked_jacobian,
@@ -346,7 +347,9 @@ def confirmed(
             trial, steps = shortened(stepwise, simpler)
         elif weakness is not None:
             key = weakness.step.candidate.key
-            refused.note(key, weakness.reason, weakness.breaks_law)
+            others = " and ".join(k for k in trial.keys if k != key)
+            reason = f"beside {others} {weakness.reason}" if others else weakness.reason
+            refused.note(key, reason, weakness.breaks_law)
             trial, steps = shortened(stepwise, weakness.step.without)
         else:
             break

@@ -33,8 +33,8 @@ from ptp_symbolic.numeric.diagnose.noise_floor import (
     is_within_noise_of_inputs,
     noise_floor_of,
 )
-from ptp_symbolic.numeric.diagnose.proposals import ProposedSets
-from ptp_symbolic.numeric.diagnose.refits import in_place, is_near_noise_floor, restarted_fit
+from ptp_symbolic.numeric.diagnose.proposals import ProposedSets, start_for
+from ptp_symbolic.numeric.diagnose.refits import is_near_noise_floor, restarted_fit
 from ptp_symbolic.numeric.diagnose.responses import (
     Columns,
     canonical_correlation,
@@ -105,7 +105,7 @@ def refitted_alternatives(
         wanted = {c.key: c for c in (*(s.candidate for s in similar), *along)}
         for candidate in wanted.values():
             if keys_of(instead(candidate)) not in tried:
-                begun += in_place(problem, stepwise.proposals, instead(candidate), chosen)
+                begun += _in_place(problem, stepwise.proposals, instead(candidate), chosen)
         resembling |= {keys_of(instead(s.candidate)) for s in similar}
     if begun:
         problem.progress(f"refitting {len(begun)} sets that resemble the chosen one")
@@ -172,6 +172,22 @@ def better_alternative(
         r.trial for r in found if is_materially_better(gain(r.trial, chosen), tests, material)
     ]
     return ranked(better)[0] if better else None
+
+
+def _in_place(
+    problem: SearchProblem,
+    proposals: ProposedSets,
+    candidates: Sequence[Candidate],
+    trial: FittedModel,
+) -> list[FittedModel]:
+    """A set like that of `trial`, where the rows start it, and where they start its candidates
+    alone.
+    """
+    start, run = start_for(problem, proposals, candidates, trial.values), problem.executor
+    beside = trial.values | {name: start[name] for c in candidates for name in c.names}
+    return [
+        fitted(problem, candidates, values, None, 0, executor=run) for values in (start, beside)
+    ]
 
 
 def alike_along_motion(

@@ -59,10 +59,7 @@ from ptp_symbolic.numeric.diagnose.regression import weakly_identified
 from ptp_symbolic.numeric.diagnose.responses import (
     Response,
     compensated,
-    effect_of,
-    projected_off,
     stacked_jacobian,
-    stacked_residual,
 )
 from ptp_symbolic.numeric.identify.constants import (
     ABOVE_NOISE,
@@ -289,20 +286,6 @@ def without_run(problem: SearchProblem, trial: FittedModel, name: str) -> Fit:
     return fitted(part, trial.candidates, trial.values, z, POLISH, executor=run).fit
 
 
-@recorded()
-def expected_gain(trial: FittedModel, vanishing: Mapping[str, float]) -> float:
-    """The share by which the fitted parameters in `vanishing` reduce the squared residual, against
-    their values there, by linear prediction from the Jacobian.
-    """
-    fit = trial.fit
-    residual = stacked_residual(fit)
-    columns = stacked_jacobian(fit)
-    others = [k for k, f in enumerate(fit.free) if f.name not in vanishing]
-    effect = projected_off(effect_of(fit, vanishing, columns)[:, None], columns[:, others])[:, 0]
-    taken = float(effect @ effect)
-    return taken / max(taken + float(residual @ residual), 1e-300)
-
-
 def forms(problem: SearchProblem, candidate: Candidate) -> list[Candidate]:
     """All forms of a candidate, a scanned frequency where it was found."""
     starts = {f.name: f for f in candidate.free}
@@ -397,20 +380,6 @@ def taken_over(
 def _taken(fit: Fit, vanishing: Mapping[str, float], others: Set[str]) -> dict[str, float]:
     """See `compensated`."""
     return compensated(fit, vanishing, others, stacked_jacobian(fit))
-
-
-def in_place(
-    problem: SearchProblem,
-    proposals: ProposedSets,
-    candidates: Sequence[Candidate],
-    trial: FittedModel,
-) -> list[FittedModel]:
-    """A set like that of `trial`, where the rows start it, and where they start its candidates
-    alone.
-    """
-    start = start_for(problem, proposals, candidates, trial.values)
-    beside = trial.values | {name: start[name] for c in candidates for name in c.names}
-    return [_begun(problem, candidates, values, None) for values in (start, beside)]
 
 
 def far_starts(

@@ -475,3 +475,17 @@ def _left(
     wave = projected_off(np.column_stack(tables), away)
     rest = projected_off(residual[:, None], wave)
     return float(np.sum(rest**2) / max(np.sum(residual**2), 1e-300))
+
+
+@recorded()
+def expected_gain(trial: FittedModel, vanishing: Mapping[str, float]) -> float:
+    """The share by which the fitted parameters in `vanishing` reduce the squared residual, against
+    their values there, by linear prediction from the Jacobian.
+    """
+    fit = trial.fit
+    residual = stacked_residual(fit)
+    columns = stacked_jacobian(fit)
+    others = [k for k, f in enumerate(fit.free) if f.name not in vanishing]
+    effect = projected_off(effect_of(fit, vanishing, columns)[:, None], columns[:, others])[:, 0]
+    taken = float(effect @ effect)
+    return taken / max(taken + float(residual @ residual), 1e-300)

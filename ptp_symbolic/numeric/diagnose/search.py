@@ -485,14 +485,10 @@ def _begun(stepwise: StepwiseSearch, found: list[FittedModel]) -> tuple[FittedMo
 def _over_other_roads(
     stepwise: StepwiseSearch, begun: FittedModel, grown: FittedModel, steps: list[Step]
 ) -> tuple[FittedModel, list[Step]]:
-    """What was `begun` and `grown`, or what an exchange of candidates or effects alone give, if
+    """What was `begun` and `grown`, or what grows without a candidate, or from effects alone, if
     that is better; and the steps of its candidates.
     """
-    best, other = grown, stepwise.exchanged(grown)
-    if other is not None:
-        stepwise.tried.others.append(best)
-        best, steps = extended(stepwise, *stepwise.pruned(other))
-    best, steps = floated(stepwise, best, steps)
+    best, steps = floated(stepwise, grown, steps)
     if begun.candidates or any(c.is_declared_value for c in best.candidates):
         best, steps = by_effects_alone(stepwise, best, steps, grown)
     return best, steps

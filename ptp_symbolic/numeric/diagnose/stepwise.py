@@ -1,4 +1,4 @@
-"""The moves of a stepwise search: sets are completed, pruned, grown, exchanged and simplified by
+"""The moves of a stepwise search: sets are completed, pruned, grown and simplified by
 refits; what they have found, and what was tried.
 
 Candidates are compared over a few short windows first. Windows forget: neither a rest nor a bounce
@@ -40,18 +40,15 @@ from ptp_symbolic.numeric.diagnose.proposals import ProposedSets, start_for
 from ptp_symbolic.numeric.diagnose.refits import (
     along,
     beside_declared,
-    expected_gain,
     forms,
     from_rows,
     fullest,
-    in_place,
     polished,
     sharpened,
     taken_over,
     to_its_end,
 )
-from ptp_symbolic.numeric.diagnose.regression import exchanges
-from ptp_symbolic.numeric.diagnose.responses import responses
+from ptp_symbolic.numeric.diagnose.responses import expected_gain, responses
 from ptp_symbolic.numeric.identify.constants import (
     FALSE_ALARM,
     ITERATIONS,
@@ -458,24 +455,6 @@ class StepwiseSearch:
             if self.is_earned(gain(best, trial), p_value(best, added), new):
                 return best
         return None
-
-    def exchanged(self, trial: FittedModel) -> FittedModel | None:
-        """A set that fits better, with another candidate in the place of one of its own, of those
-        that the rows find no worse; None where there is none.
-        """
-        if self.proposals.regression is None or self.problem.is_over:
-            return None
-        sets = exchanges(self.proposals.regression, trial.candidates)[:TRIED]
-        begun = [
-            t
-            for candidates in sets
-            for t in in_place(self.problem, self.proposals, candidates, trial)
-        ]
-        left = halving(self.problem, begun, TRIED, seen=self.tried.others)
-        found = [self.polished(t) for t in left if is_near(t, [trial])]
-        self.tried.others.extend([*found, *(t for t in left if not is_near(t, [trial]))])
-        best = ranked([trial, *found])[0]
-        return best if best is not trial else None
 
 
 def simplified(stepwise: StepwiseSearch, trial: FittedModel) -> FittedModel:

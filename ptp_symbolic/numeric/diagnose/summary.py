@@ -525,8 +525,9 @@ def _unfitted(search: Search, forms: Sequence[Candidate]) -> dict[str, Any]:
     declared model along the motion.
     """
     rows = search.proposals.regression
-    found = [] if rows is None else [gain_along_motion(rows, (form,), ()) for form in forms]
-    best = max((g for g in found if g is not None), key=lambda g: g.share, default=None)
+    shown = [] if rows is None else [gain_along_motion(rows, (form,), ()) for form in forms]
+    found = [gain for gain in shown if gain is not None]
+    best = max(found, key=lambda gain: gain.share, default=None)
     return {
         "effect": forms[0].id,
         "axis": forms[0].axis,
@@ -535,7 +536,9 @@ def _unfitted(search: Search, forms: Sequence[Candidate]) -> dict[str, Any]:
         "train_error_after": None,
         "parameters": {},
         "accepted": False,
-        "why": "compared along the measured motion, where other sets did better",
+        "why": "compared along the measured motion, where other sets did better"
+        if found
+        else "not tried: it has no influence along the measured motion, and was not simulated",
     }
 
 

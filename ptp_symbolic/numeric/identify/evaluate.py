@@ -284,12 +284,11 @@ def _compare(functions, signals, time, x, s, u, p, measured, columns, picked, we
                 j[row, c] = -weight[o] * total_derivative
 
 
-_TABLE = types.int64[:, ::1]
 AHEAD = (
     (_fast, (MATRIX, MATRIX, INTEGERS)),
     (_of_each_other, (MATRIX, INTEGERS)),
-    (_settle_state, (MATRIX, VECTOR, INTEGERS, MATRIX, _TABLE, VECTOR)),
-    (_settle_tangents, (MATRIX, MATRIX, INTEGERS, INTEGERS, MATRIX, _TABLE, MATRIX)),
+    (_settle_state, (MATRIX, VECTOR, INTEGERS, MATRIX, types.int64[:, ::1], VECTOR)),
+    (_settle_tangents, (MATRIX, MATRIX, INTEGERS, INTEGERS, MATRIX, types.int64[:, ::1], MATRIX)),
     (
         _compare,
         (

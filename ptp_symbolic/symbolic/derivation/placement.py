@@ -59,6 +59,7 @@ def place_effects(platform: Platform) -> list[tuple[Effect, Place]]:
         placed = _placed(platform)
         _check_needs(platform, placed)
         _check_ownership(placed)
+        _check_exclusion(placed)
         _check_parameters(platform, placed)
     return placed
 
@@ -94,6 +95,17 @@ def _placed(platform: Platform) -> list[tuple[Effect, Place]]:
         place = Place(platform.axes, declaration.axis, declaration.site, shafts, linear, turns)
         placed.append((effect, place))
     return placed
+
+
+def _check_exclusion(placed: list[tuple[Effect, Place]]) -> None:
+    for effect, place in placed:
+        excluded = effect.structure.excluded_by if effect.structure else ()
+        for other, there in placed:
+            if other.id in excluded and there.axis == place.axis:
+                raise InputError(
+                    f"Effects '{effect.id}' and '{other.id}' exclude each other on axis"
+                    f" '{place.axis}'; remove one of them."
+                )
 
 
 def parameters_of(placed: list[tuple[Effect, Place]]) -> dict[str, Parameter]:

@@ -54,7 +54,9 @@ HARMONIC_DRIVE = Effect(
     structural=True,
     splits_axis=True,
     dissipative=True,
-    structure=Structure(needs=("winding_resistance_{axis}",)),
+    structure=Structure(
+        needs=("winding_resistance_{axis}",), excluded_by=("shaft_compliance", "backlash")
+    ),
     separating_experiment="Lock the motor and load the joint in slow loops of several sizes: the"
     " twist stiffens, and every loop leaves an area.",
     instead_on_linear="it turns on both sides: declare shaft_compliance",
