@@ -36,6 +36,7 @@ from ptp_symbolic.numeric.simulation.kernels.calls import call, output_addresses
 from ptp_symbolic.numeric.simulation.kernels.records import (
     CUBE,
     DONE,
+    INTEGER_TABLE,
     INTEGERS,
     MATRIX,
     VECTOR,
@@ -287,8 +288,8 @@ def _compare(functions, signals, time, x, s, u, p, measured, columns, picked, we
 AHEAD = (
     (_fast, (MATRIX, MATRIX, INTEGERS)),
     (_of_each_other, (MATRIX, INTEGERS)),
-    (_settle_state, (MATRIX, VECTOR, INTEGERS, MATRIX, types.int64[:, ::1], VECTOR)),
-    (_settle_tangents, (MATRIX, MATRIX, INTEGERS, INTEGERS, MATRIX, types.int64[:, ::1], MATRIX)),
+    (_settle_state, (MATRIX, VECTOR, INTEGERS, MATRIX, INTEGER_TABLE, VECTOR)),
+    (_settle_tangents, (MATRIX, MATRIX, INTEGERS, INTEGERS, MATRIX, INTEGER_TABLE, MATRIX)),
     (
         _compare,
         (

@@ -36,7 +36,7 @@ OUTPUT, EVENTS, STEPS, INSTANT, SOURCES, UNBALANCED = 0, 1, 2, 3, 4, 5
 
 VECTOR, MATRIX = types.float64[::1], types.float64[:, ::1]
 CUBE, INTEGERS = types.float64[:, :, ::1], types.int64[::1]
-TABLE_OF_CONTACTS = types.int64[:, ::1]
+INTEGER_TABLE = types.int64[:, ::1]
 TABLE = types.Tuple((VECTOR, MATRIX, INTEGERS, MATRIX, INTEGERS, MATRIX, INTEGERS))
 
 
@@ -192,13 +192,13 @@ MACHINE_TYPES = (
     _V,  # what is prepared of them
     _I,  # state index of the rate of every friction
     _I,  # per state the friction that zeroes it when it comes to rest, or -1
-    TABLE_OF_CONTACTS,
+    INTEGER_TABLE,
     TABLE,
     _I,  # cursor [nu]
     types.boolean,  # inputs are constant between stops
 )
 _INT = types.int64
-EQUATIONS_TYPE = types.Tuple((*[_INT] * 4, _V, _V, _I, _I, _INT, _INT, TABLE_OF_CONTACTS))
+EQUATIONS_TYPE = types.Tuple((*[_INT] * 4, _V, _V, _I, _I, _INT, _INT, INTEGER_TABLE))
 INPUTS_TYPE = types.Tuple((TABLE, _I, types.boolean, _V, _V))
 STEP_TYPE = types.Tuple((_V, _V, _M, _M, _V, _M, _M, _M, _M, _M, _M, _I, _V, _V, _V))
 WATCH_TYPE = types.Tuple(
