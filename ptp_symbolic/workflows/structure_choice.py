@@ -119,11 +119,13 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     every, untried = structures(platform)
     platforms = _platforms(every)
 
-    def searched(structure: FittedStructure | None, brief: bool) -> Searched:
+    def searched(
+        structure: FittedStructure | None, brief: bool, begin: Searched | None = None
+    ) -> Searched:
         name = " + ".join(structure.keys) if structure else ""
         logs.progress(f"searching for terms beside {name or 'what is declared'}")
         there = platforms[structure.keys, structure.provides] if structure else platform
-        return _searched(there, structure, logs, brief=brief)
+        return _searched(there, structure, logs, begin, brief=brief)
 
     terms = searched(None, brief=bool(every))
     is_enough = terms.is_noise_alone and not terms.found.chosen.candidates
@@ -143,6 +145,8 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
             platforms |= _platforms(beside)
     followed = fitted.quiet or ([] if terms.is_noise_alone else fitted.order[:FOLLOWED])
     outcomes = [searched(s, brief=True) for s in followed]
+    if not logs.allowance.is_over:
+        outcomes = [_from_what_contains_it(one, outcomes, searched) for one in outcomes]
     is_late = not terms.is_noise_alone and logs.allowance.is_over
     if not terms.is_noise_alone and not is_late:
         outcomes, terms = _at_length(outcomes, terms, searched)
@@ -206,10 +210,24 @@ def _paired(
     return replace(fitted, begun=(*fitted.begun, *finished)), beside
 
 
+def _from_what_contains_it(
+    one: Searched, outcomes: Sequence[Searched], searched: Callable[..., Searched]
+) -> Searched:
+    """A search that leaves more than noise, or another from the values of one that leaves noise
+    alone with more structure, if it does so too: a gap beside a shaft leads to the place where the
+    shaft alone is enough.
+    """
+    richer = [s for s in outcomes if s.is_noise_alone and _contains(s, one)]
+    if one.is_noise_alone or not richer:
+        return one
+    again = searched(one.structure, True, richer[0])
+    return again if again.is_noise_alone else one
+
+
 def _at_length(
     outcomes: Sequence[Searched],
     terms: Searched,
-    searched: Callable[[FittedStructure | None, bool], Searched],
+    searched: Callable[..., Searched],
 ) -> tuple[list[Searched], Searched]:
     """Structures and the declared one, with the whole search in what is best so far, or the
     simplest that it contains and is not far ahead of: a gap beside a shaft may make up for a term
@@ -256,13 +274,20 @@ def _searched(
     platform: Platform,
     structure: FittedStructure | None,
     logs: Logs,
+    begin: Searched | None = None,
     *,
     brief: bool,
 ) -> Searched:
-    """Search for terms in a structure, begun at the values that it was fitted with."""
+    """Search for terms in a structure, begun at the values that it was fitted with, or at those
+    that another search ended with.
+    """
     begun = platform
     if structure is not None:
-        begun = variants.extended(platform, (), structure.trial.values, ())
+        values = structure.trial.values
+        if begin is not None:
+            there = begin.found.chosen.values
+            values = {name: there.get(name, value) for name, value in values.items()}
+        begun = variants.extended(platform, (), values, ())
     try:
         lacks_nothing = structure is not None and _is_enough(structure, platform)
         model = model_of(begun if lacks_nothing else variants.with_candidates(begun))
