@@ -295,7 +295,7 @@ RULES = (
     Rule(
         "structure identifiable",
         "Some parameter of an added structure is identifiable.",
-        _in("structures", "is_identifiable"),
+        _in("structures", "is_there"),
         _always(True),
         "safety: a structure of which no parameter is known",
     ),

@@ -247,6 +247,19 @@ def is_identifiable(effect: Candidate, trial: FittedModel) -> bool:
     return any(e.identified and not e.at_bound for e in own)
 
 
+def is_there(effect: Candidate, trial: FittedModel) -> bool:
+    """Whether the logs tell a parameter of an effect that a trial has, or keep one off both of its
+    bounds: stiffness and inertia that are known only together are those of a shaft all the same.
+    """
+    bounds = {f.name: (f.lower, f.upper) for f in trial.fit.free}
+    kept_off = (
+        e.has_interval and bounds[e.name][0] < e.lower and e.upper < bounds[e.name][1]
+        for e in estimates(trial.fit)
+        if e.name in effect.parameters
+    )
+    return is_identifiable(effect, trial) or any(kept_off)
+
+
 def named_effects(structure: FittedStructure, trial: FittedModel) -> tuple[Candidate, ...]:
     """The effects of a structure, as a trial that has it tells them: one that came along with the
     first, and of which the logs tell nothing, is a part of it.
@@ -281,7 +294,7 @@ def why_rejected(
         why = f"reduces the sum of squares by {share:.0f} % (lower 95 % limit {least:.0f} %)"
         return earned, f"{why}, too little while the residual exceeds the noise"
     first = structure.added[0]
-    if not is_identifiable(first, trial):
+    if not is_there(first, trial):
         return earned, f"no parameter of {first.key} is identifiable from these logs"
     if not is_moved_by_inputs(replace(problem, train=trial.fit.runs), trial):
         return earned, "with it the simulated motion no longer depends on the inputs"

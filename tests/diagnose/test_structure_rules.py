@@ -1,0 +1,32 @@
+"""Which structures may be named: what the logs say of their parameters."""
+
+import numpy as np
+import pytest
+
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.fitted_model import FittedModel
+from ptp_symbolic.numeric.diagnose.structures import is_identifiable, is_there
+from ptp_symbolic.numeric.identify.coordinates import free_parameter
+from tests.identify.straight import finished
+
+
+@pytest.mark.parametrize(
+    ("tells_stiffness", "identifiable", "there"),
+    [(0.5, True, True), (0.05, False, True), (0.002, False, False)],
+)
+def test_a_stiffness_that_the_logs_bound_is_there_though_they_do_not_tell_it(
+    tells_stiffness: float, identifiable: bool, there: bool
+) -> None:
+    """Inertia and stiffness of a resonance show by their ratio, and hardly apart from it."""
+    inertia = free_parameter("J", 0.05, 1e-4, 2.0)
+    stiffness = free_parameter("k", 500.0, 1e-3, 1e9)
+    effect = Candidate("shaft", "pan", "", "", (stiffness,), {})
+    rng, time = np.random.default_rng(3), 0.1 * np.arange(400)
+    ratio, alone = np.sin(time), tells_stiffness * np.cos(3.0 * time)
+    slopes = [np.stack([5.0 * ratio, -5.0 * ratio + alone], axis=1)] * 2
+    residuals = [rng.standard_normal(400) for _ in range(2)]
+    values = {"J": 0.05, "k": 500.0}
+    fit = finished(residuals, slopes, None, (inertia, stiffness), values)
+    trial = FittedModel((), fit)
+    assert is_identifiable(effect, trial) is identifiable
+    assert is_there(effect, trial) is there
