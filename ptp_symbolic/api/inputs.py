@@ -72,7 +72,7 @@ def input_signal(model: Model, name: str, given: Input, times: FloatArray) -> In
     start, end = float(times[0]), float(times[-1])
     if isinstance(given, InputSignal):
         return given
-    if isinstance(given, str) and given.strip().partition(":")[0] in PROFILES:
+    if isinstance(given, str) and _is_meant_as_profile(given):
         try:
             return parse_profile(given, end - start)
         except InputError as error:
@@ -139,6 +139,12 @@ def _numbers(given: object, what: str) -> FloatArray:
             "a number, a text such as '3 V' or 'step:24@0.5', a function of time, samples, a pair"
             " (times, samples), a log or a DataFrame",
         ) from error
+
+
+def _is_meant_as_profile(text: str) -> bool:
+    """Whether a text begins with the kind of a profile, or with a word in its place."""
+    kind, colon, _ = text.strip().partition(":")
+    return kind in PROFILES or (bool(colon) and kind.isalpha() and len(kind) > 1)
 
 
 def _is_whole(given: object) -> bool:

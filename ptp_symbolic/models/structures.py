@@ -111,7 +111,7 @@ def _lacking(platform: Platform, effect: Effect, axis: str | None) -> str | None
     beside = [e.effect for e in platform.effects if e.axis == axis]
     excluding = [e for e in effect.structure.excluded_by if e in beside]
     if excluding:
-        return f"not tried: {' and '.join(excluding)} of this axis leave no place for it"
+        return f"not tried: it excludes {' and '.join(excluding)}, declared on this axis"
     missing = _missing(platform, effect.structure.needs, axis)
     if missing:
         return f"not tried: it needs {missing}, which no declared effect defines"

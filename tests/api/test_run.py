@@ -2,6 +2,7 @@
 
 import math
 import pickle
+import re
 from pathlib import Path
 
 import numpy as np
@@ -142,7 +143,7 @@ def test_a_plot_has_a_panel_per_unit() -> None:
         ),
         ({"metod": "runge_kutta"}, "argument 'metod': did you mean 'method'"),
         ({"tau_pan": "3 kg"}, "Input 'tau_pan' = '3 kg': kg does not fit its unit N m"),
-        ({"tau_pan": "stop:3"}, "Input 'tau_pan' = 'stop:3'; write a number"),
+        ({"tau_pan": "stop:3"}, "Profile 'stop:3' is not understood; use one of constant"),
         ({"tau_pan": [1.0, 2.0]}, r"has shape \(2,\), and there are 101 output times"),
         ({"tau_pan": lambda t: float("inf")}, "Input 'tau_pan': The input function returns inf at"),
         ({"tau_pan": object()}, "Input 'tau_pan' is of type object"),
@@ -293,3 +294,36 @@ def test_a_state_is_the_motion_and_an_output_what_its_sensor_shows() -> None:
     assert run["theta_pan"][late] == pytest.approx(size * np.sin(rate * t), abs=1e-6)
     shown = gain * size * np.sin(rate * t - phase)
     assert run.outputs["theta_pan"][late] == pytest.approx(shown, abs=1e-6)
+
+
+def test_a_shaft_that_begins_wound_up_is_pointed_out() -> None:
+    """The gear output stays at zero unless it is given with its joint."""
+    machine = ptp.load("pan_drive")
+    with pytest.warns(UserWarning, match="Give theta_gear_pan too"):
+        wound = machine.simulate(0.001, x0={"theta_pan": "10 deg"})
+    whole = machine.simulate(0.001, x0={"theta_pan": 0.1, "theta_gear_pan": 0.1})
+    assert abs(wound["omega_pan"][-1]) > 1.0 > 1e-9 > abs(whole["omega_pan"][-1])
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"tau_pan": "stp:12@0.1"}, "use one of constant:3"),
+        ({"TAU_PAN": 1.0}, "did you mean 'tau_pan'?"),
+    ],
+)
+def test_what_was_meant_is_said(given: dict[str, object], said: str, ideal: ptp.Machine) -> None:
+    with pytest.raises(ptp.InputError, match=re.escape(said)):
+        ideal.simulate(0.1, **given)  # type: ignore[arg-type]
+
+
+def test_a_signal_that_the_machine_lacks_is_refused_when_it_is_loaded(tmp_path: Path) -> None:
+    path = tmp_path / "turret.toml"
+    path.write_text(
+        'platform = { name = "turret", title = "Turret", axes = ["pan"] }\n'
+        'effects = [{ effect = "rigid_bodies" }]\n'
+        "[parameters]\nJ_pan = { value = 0.1 }\n"
+        '[signals]\npan_angle = { role = "output", column = "angle", unit = "rad" }\n'
+    )
+    with pytest.raises(ptp.InputError, match="pan_angle"):
+        ptp.load(path)

@@ -58,7 +58,7 @@ def test_a_fit_far_from_the_floor_says_so(call, tmp_path: Path) -> None:
 def test_nothing_to_fit_and_what_was_not_declared_are_said(call, tmp_path: Path) -> None:
     centred = '[parameters.c_y_payload]\nvalue = 0.0\nunit = "m"\n'
     path = changed(tmp_path, ("start = 0.05", "value = 0.05"), (centred, ""))
-    done = call("fit", "--platform", path, LOG, "--out", tmp_path / "out")
+    done = call("fit", "--platform", path, "--train", LOG, "--out", tmp_path / "out")
     assert done.code == 0
     assert "Nothing is free; give a parameter 'start' in place of 'value' to fit it." in done.out
     assert done.err.endswith("Not declared, at their natural default: c_y_payload = 0 m.\n")

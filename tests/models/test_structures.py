@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from ptp_symbolic.errors import InputError
 from ptp_symbolic.models.structures import structures
 from ptp_symbolic.models.variants import candidate_effects, with_candidates
 from ptp_symbolic.platform import (
@@ -45,6 +46,17 @@ def test_a_declared_shaft_makes_the_gap_a_term_and_no_structure() -> None:
     platform = platform_of(*BODIES, *SERVO, ("shaft_compliance", "pan"))
     assert ("backlash", "pan") in {(e.effect, e.axis) for e in candidate_effects(platform)}
     assert not any("backlash@pan" in keys for keys in keys_of(platform))
+
+
+def test_an_axis_has_one_shaft() -> None:
+    """Two, side by side, would leave what is between them without inertia."""
+    shaft, drive = ("shaft_compliance", "pan"), ("harmonic_drive", "pan")
+    found, untried = structures(platform_of(*BODIES, *SERVO, shaft))
+    assert ("harmonic_drive@pan",) not in [s.keys for s in found]
+    why = "not tried: it excludes shaft_compliance, declared on this axis"
+    assert untried["harmonic_drive@pan"] == why
+    with pytest.raises(InputError, match="exclude each other on axis 'pan'"):
+        place_effects(platform_of(*BODIES, *SERVO, shaft, drive))
 
 
 def test_an_axis_without_a_motor_has_nothing_for_a_shaft_to_follow() -> None:
