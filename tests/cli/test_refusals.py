@@ -154,7 +154,10 @@ def test_arguments_of_functions_become_options_of_commands() -> None:
 
 def test_what_is_missing_or_misspelt_points_to_the_help(call) -> None:
     for words, said in (
-        (("fit",), "Missing argument 'LOGS...'. See 'ptp-symbolic fit --help'."),
+        (
+            ("fit", "--platform", "x", "--out", "y"),
+            "Missing argument 'LOGS...'. See 'ptp-symbolic fit --help'.",
+        ),
         (("simulate",), "Missing option '--platform'. See 'ptp-symbolic simulate --help'."),
         (("fit", "--platfrom", "x"), "Did you mean '--platform'? See 'ptp-symbolic fit --help'."),
         (("bench", "--zzz"), "No such option '--zzz'. See 'ptp-symbolic bench --help'."),
