@@ -36,12 +36,12 @@ def initial_vector(model: Model, given: Values | None) -> FloatArray:
 
 
 def wound_up(model: Model, given: Collection[str], states: Mapping[str, float]) -> list[str]:
-    """A line for every joint whose state was `given` while that of its gear output, which was not,
+    """A line for every joint whose angle was `given` while that of its gear output, which was not,
     is another; `states` are all those at the start.
     """
     lines = []
     for joint in given:
-        gear = joint.replace("theta_", "theta_gear_").replace("omega_", "omega_gear_")
+        gear = joint.replace("theta_", "theta_gear_")
         if gear in states and gear not in given and states[gear] != states[joint]:
             unit = model.units[joint]
             lines.append(

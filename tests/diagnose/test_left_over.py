@@ -56,7 +56,7 @@ def test_what_inputs_carry_is_the_noise_integrated_twice() -> None:
         normalised_residual(finished(list(paths[:, k : k + RUNS].T)))[0]
         for k in range(0, 3000, RUNS)
     ]
-    assert found.usual[0] == pytest.approx(np.median(each), rel=0.25)
+    assert found.median[0] == pytest.approx(np.median(each), rel=0.25)
     assert 0.85 < np.mean(each <= found.rare[0]) <= 0.99
     assert 0.9 < np.mean(each <= found.most[0]) <= 1.0
     assert found.most[1] < 1e-4
@@ -75,7 +75,7 @@ def test_declared_noise_excuses_no_more_of_what_is_left_than_of_an_effect(
         Any, SimpleNamespace(problem=problem_of(fit, *noise), propagated=others, followed=None)
     )
     found = StepwiseSearch.input_noise_for(stepwise, FittedModel((), fit))
-    assert found is others if not own else found.usual[0] == propagated(NOISE).usual[0] > 1.0
+    assert found is others if not own else found.median[0] == propagated(NOISE).median[0] > 1.0
 
 
 @pytest.mark.parametrize("freedom", [1, 4, 30])
@@ -124,7 +124,7 @@ def test_a_replay_that_cannot_be_simulated_leaves_what_the_others_of_its_run_lea
         monkeypatch.setattr(module, "replayed_squares", lambda *_: table)
         part = replace(fit, runs=fit.runs[:runs])
         found = propagated_input_noise(problem_of(part, 1.0, 0.0), part)
-        return [float(b[0]) for b in (found.usual, found.rare, found.most)]
+        return [float(b[0]) for b in (found.median, found.rare, found.most)]
 
     failed = squares.copy()
     failed[::2] = np.nan
