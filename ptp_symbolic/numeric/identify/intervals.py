@@ -349,7 +349,16 @@ def _columns(fit: Fit) -> list[FloatArray]:
     """Derivatives [k, nf] of the residuals of every run by the search coordinates, without what the
     unknown starts can explain.
     """
-    return [project_out(e.by_parameter, e.by_start) for e in fit.evaluations]
+    return [project_out(_usable(e.by_parameter), _usable(e.by_start)) for e in fit.evaluations]
+
+
+def _usable(table: FloatArray) -> FloatArray:
+    """Derivatives [k, n], zero where those by a coordinate have no finite sum of squares: tangents of
+    a motion that multiplies errors without bound tell nothing of it.
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        told = np.isfinite(np.sum(np.square(table, dtype=np.float64), axis=0))
+    return table if np.all(told) else np.where(told, table, 0.0)
 
 
 def _by_log(fit: Fit) -> list[tuple[FloatArray, FloatArray]]:
@@ -360,7 +369,7 @@ def _by_log(fit: Fit) -> list[tuple[FloatArray, FloatArray]]:
 
 def _residuals(fit: Fit) -> list[FloatArray]:
     """Residuals [k] of every run, without what the unknown starts can explain."""
-    return [project_out(e.residual[:, None], e.by_start)[:, 0] for e in fit.evaluations]
+    return [project_out(e.residual[:, None], _usable(e.by_start))[:, 0] for e in fit.evaluations]
 
 
 def _covariance(fit: Fit, columns: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
