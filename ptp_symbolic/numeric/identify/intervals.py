@@ -353,8 +353,8 @@ def _columns(fit: Fit) -> list[FloatArray]:
 
 
 def _usable(table: FloatArray) -> FloatArray:
-    """Derivatives [k, n], zero where those by a coordinate have no finite sum of squares: tangents of
-    a motion that multiplies errors without bound tell nothing of it.
+    """Derivatives [k, n], zero where those by a coordinate have no finite sum of squares: tangents
+    of a motion that multiplies errors without bound tell nothing of it.
     """
     with np.errstate(over="ignore", invalid="ignore"):
         told = np.isfinite(np.sum(np.square(table, dtype=np.float64), axis=0))
