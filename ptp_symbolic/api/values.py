@@ -46,7 +46,7 @@ def wound_up(model: Model, given: Collection[str], states: Mapping[str, float]) 
             unit = model.units[joint]
             lines.append(
                 f"{joint} starts at {states[joint]:g} {unit} and {gear} at {states[gear]:g} {unit}:"
-                f" the shaft between them starts wound up. Give {gear} too."
+                f" a shaft between them starts wound up, a gap closed. Give {gear} too."
             )
     return lines
 

@@ -20,6 +20,7 @@ from ptp_symbolic.numeric.diagnose.fitted_model import (
     FittedModel,
     SearchProblem,
     all_free,
+    fitted,
     tolerance_for,
 )
 from ptp_symbolic.numeric.diagnose.gain import (
@@ -36,7 +37,7 @@ from ptp_symbolic.numeric.diagnose.noise_floor import (
     leaves_noise_alone,
     noise_floor_of,
 )
-from ptp_symbolic.numeric.diagnose.refits import forms, without_run
+from ptp_symbolic.numeric.diagnose.refits import forms
 from ptp_symbolic.numeric.diagnose.regression import block_numbers
 from ptp_symbolic.numeric.diagnose.responses import (
     effect_of,
@@ -77,6 +78,7 @@ from ptp_symbolic.numeric.identify.evaluate import evaluate
 from ptp_symbolic.numeric.identify.evidence import recorded
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.intervals import chance_of_zero, with_finite_differences
+from ptp_symbolic.numeric.identify.least_squares import POLISH
 from ptp_symbolic.numeric.identify.run import with_inputs
 from ptp_symbolic.numeric.identify.windows import estimable
 
@@ -165,6 +167,15 @@ def at_bound(fit: Fit, candidate: Candidate) -> str | None:
         if ends and abs(value - candidate.vanishing.get(f.name, np.inf)) > near:
             return f.name
     return None
+
+
+def _without_run(problem: SearchProblem, trial: FittedModel, name: str) -> Fit:
+    """The trial fitted on without the run, or the windows, of a log."""
+    kept = [k for k, run in enumerate(trial.fit.runs) if run.source != name]
+    part = replace(problem, train=tuple(trial.fit.runs[k] for k in kept))
+    z = [trial.fit.z[k] for k in kept]
+    run = problem.executor
+    return fitted(part, trial.candidates, trial.values, z, POLISH, executor=run).fit
 
 
 def depends_on_run(fit: Fit, candidate: Candidate, refit: Refit | None = None) -> str | None:
@@ -479,7 +490,7 @@ def _weakness(
     quiet = leaves_noise_alone(trial, floor)
     is_within_input_noise = replace(floor, propagated=stepwise.input_noise_for(trial))
     by_gain = sorted(steps, key=lambda s: s.gain.share)
-    refit = partial(without_run, stepwise.problem, trial)
+    refit = partial(_without_run, stepwise.problem, trial)
     for step in by_gain:
         if not stepwise.is_needed(step):
             return Weakness(step, _too_little(step.gain, stepwise.problem.material))

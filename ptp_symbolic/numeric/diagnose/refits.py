@@ -277,15 +277,6 @@ def sharpened(
     return continued(problem, without_misleading(trial), POLISH, SHARP, STEP, problem.executor)
 
 
-def without_run(problem: SearchProblem, trial: FittedModel, name: str) -> Fit:
-    """The trial fitted on without the run, or the windows, of a log."""
-    kept = [k for k, run in enumerate(trial.fit.runs) if run.source != name]
-    part = replace(problem, train=tuple(trial.fit.runs[k] for k in kept))
-    z = [trial.fit.z[k] for k in kept]
-    run = problem.executor
-    return fitted(part, trial.candidates, trial.values, z, POLISH, executor=run).fit
-
-
 def forms(problem: SearchProblem, candidate: Candidate) -> list[Candidate]:
     """All forms of a candidate, a scanned frequency where it was found."""
     starts = {f.name: f for f in candidate.free}
@@ -517,10 +508,7 @@ def over_whole_runs(
     starts = [proposals.start, declared_start(problem)]
     run = problem.executor
     begun = [fitted(problem, (), values, None, executor=run) for values in starts]
-    best = halving(problem, begun, 1) or begun[-1:]
-    return _in_windows_of_its_own(
-        problem, polished(problem, best[0], propagated_input_noise(problem, best[0].fit))
-    )
+    return _finished(problem, begun)
 
 
 def fitted_over_windows(
@@ -546,10 +534,16 @@ def fitted_over_windows(
         begun.append(
             fitted(problem, (), fitted_through(growing(problem), (), proposals.start), None)
         )
-    best = halving(problem, begun, 1) or begun[-1:]
-    return _in_windows_of_its_own(
-        problem, polished(problem, best[0], propagated_input_noise(problem, best[0].fit))
-    )
+    return _finished(problem, begun)
+
+
+def _finished(
+    problem: SearchProblem, begun: Sequence[FittedModel]
+) -> tuple[SearchProblem, FittedModel]:
+    """The best of what was begun, fitted to its end, and as `_in_windows_of_its_own`."""
+    best = (halving(problem, begun, 1) or begun[-1:])[0]
+    noise = propagated_input_noise(problem, best.fit)
+    return _in_windows_of_its_own(problem, polished(problem, best, noise))
 
 
 def _in_windows_of_its_own(

@@ -526,6 +526,7 @@ def _unfitted(search: Search, forms: Sequence[Candidate]) -> dict[str, Any]:
     """
     rows = search.proposals.regression
     shown = [] if rows is None else [gain_along_motion(rows, (form,), ()) for form in forms]
+    unseen = "" if rows is None else ", and does not show along the measured motion"
     found = [gain for gain in shown if gain is not None]
     best = max(found, key=lambda gain: gain.share, default=None)
     return {
@@ -538,7 +539,7 @@ def _unfitted(search: Search, forms: Sequence[Candidate]) -> dict[str, Any]:
         "accepted": False,
         "why": "compared along the measured motion, where other sets did better"
         if found
-        else "not tried: it has no influence along the measured motion, and was not simulated",
+        else f"not tried: it was not simulated{unseen}",
     }
 
 

@@ -44,7 +44,7 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
 
 FloatArray = NDArray[np.float64]
 
-LITTLE_LEFT = math.log(SAME)  # of what a state was that has been forgotten
+LOG_OF_FORGOTTEN = math.log(SAME)  # of the share at which an initial value is forgotten
 
 
 def settle(
@@ -88,7 +88,7 @@ def _fast(fx, slopes, hidden):
         is_read = False
         for row in range(len(slopes)):
             is_read = is_read or slopes[row, k] != 0.0
-        if (is_read and fx[k, k] < 0.0) or fx[k, k] * FORGOTTEN < LITTLE_LEFT:
+        if (is_read and fx[k, k] < 0.0) or fx[k, k] * FORGOTTEN < LOG_OF_FORGOTTEN:
             found[count] = k
             count += 1
     return found[:count]
@@ -106,7 +106,9 @@ def _of_each_other(fx, fast):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _settle_state(fx, dx, fast, slopes, encoders, x):
-    """Put `fast` states where their rates dx are zero, and angles where sensors show the same."""
+    """Put `fast` states where their rates dx are zero, and angles where sensors go on showing the
+    same.
+    """
     moved = -np.linalg.solve(_of_each_other(fx, fast), dx[fast])
     x[fast] += moved
     for row, joint, gear in encoders:
@@ -120,7 +122,9 @@ def _settle_state(fx, dx, fast, slopes, encoders, x):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _settle_tangents(fx, fp, fast, columns, slopes, encoders, s):
-    """Put the tangents s of `fast` states where their rates stay zero, those of angles as above."""
+    """Put the tangents s of `fast` states where their rates stay zero, and those of angles where
+    sensors go on showing the same.
+    """
     n, ns = s.shape
     earlier, change = s[fast], np.zeros((len(fast), ns))
     s[fast] = 0.0
