@@ -1,5 +1,6 @@
 """Assemble a declared platform: place its effects, resolve quantities, derive the equations."""
 
+import keyword
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -11,7 +12,6 @@ from ptp_symbolic.symbolic.derivation.equations import Equations, PlacedEffect
 from ptp_symbolic.symbolic.derivation.ledger import energy_ledger
 from ptp_symbolic.symbolic.derivation.machine import machine
 from ptp_symbolic.symbolic.derivation.placement import acts_on, definitions, resolved_parameters
-from ptp_symbolic.symbolic.derivation.reserved_names import refuse_reserved_names
 from ptp_symbolic.symbolic.effect_interface.conditions import Limit
 from ptp_symbolic.symbolic.effect_interface.contribution import Input, Sampler, State, Switch
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
@@ -20,6 +20,15 @@ from ptp_symbolic.symbolic.effect_interface.place import quantity_name
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.kinematics import TIME
 from ptp_symbolic.symbolic.symbols import ZERO
+
+# names that emitted modules need for themselves
+RESERVED = frozenset(
+    ["t", "x", "u", "p", "m", "c", "g", "y", "z", "e", "r", "dx", "forces", "np", "math", "float32"]
+)
+RESERVED_PREFIXES = (
+    *("mass_", "force_", "accel_", "inverse_", "slide_", "side_", "active_", "rate_of_"),
+    *("given_", "balance_"),
+)
 
 
 def assemble(platform: Platform) -> Equations:
@@ -81,7 +90,7 @@ def assemble(platform: Platform) -> Equations:
         rigid_equations=parts.rigid_equations,
     )
     equations = _with_parameters(equations, resolved_parameters(platform, placed))
-    refuse_reserved_names(equations)
+    _refuse_reserved_names(equations)
     return equations
 
 
@@ -210,3 +219,21 @@ def _refuse_undefined(equations: Equations, names: set[str]) -> None:
             f"Nothing defines {', '.join(unknown)}: declare it as a parameter of its effect, or"
             " mend its name."
         )
+
+
+def _refuse_reserved_names(equations: Equations) -> None:
+    """Raise ValueError for a parameter, state, input or named function whose name is none, or
+    that of a variable or an intermediate result of the emitted modules.
+    """
+    named = [("Parameter", p.name) for p in equations.parameters]
+    named += [("State", state.name) for state in equations.extra_states]
+    named += [("Input", given.name) for given in equations.inputs]
+    named += [("Named function", str(symbol)) for symbol, _ in equations.terms]
+    for what, name in named:
+        if not (name.isidentifier() and name.isascii()) or keyword.iskeyword(name):
+            raise ValueError(f"{what} '{name}' has no valid name: use letters, digits and _.")
+        if name in RESERVED or name.startswith(RESERVED_PREFIXES):
+            raise ValueError(
+                f"{what} '{name}' has a name that emitted modules use for themselves; put its"
+                " meaning first."
+            )
