@@ -138,7 +138,7 @@ def _heading(effect: Effect) -> str:
         found = "Declared only: `diagnose` does not look for it."
     text = f"`{effect.id}` sits on {facts['sits_on']}. {found}"
     for need in facts["needs"]:
-        text += f" It needs `{need['quantity']}`, from {' or '.join(_code(need['from']))}."
+        text += f" It needs {' or '.join(_code(need['from']))} (`{need['quantity']}`)."
     if effect.instead_on_linear:
         text += f" It is not for a linear joint: {effect.instead_on_linear}."
     lines = ["[[effects]]", f'effect = "{effect.id}"', *(['axis = "pan"'] * effect.on_axis)]

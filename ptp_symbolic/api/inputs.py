@@ -2,7 +2,7 @@
 
 import inspect
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -149,7 +149,7 @@ def _is_meant_as_profile(text: str) -> bool:
 
 def _is_whole(given: object) -> bool:
     """Whether `given` is a table of several columns: a log, its path, or a DataFrame."""
-    if isinstance(given, Path) or _is_log(given) or _is_frame(given):
+    if isinstance(given, Path) or _is_log(given) or is_frame(given):
         return True
     return isinstance(given, str) and given.lower().endswith(LOG_FILES)
 
@@ -159,14 +159,15 @@ def _is_log(given: object) -> bool:
     return logs is not None and isinstance(given, logs.Log)
 
 
-def _is_frame(given: object) -> bool:
+def is_frame(given: object) -> bool:
+    """Whether `given` is a pandas DataFrame."""
     pandas = sys.modules.get("pandas")
     return pandas is not None and isinstance(given, pandas.DataFrame)
 
 
 def _columns(model: Model, given: Any) -> tuple[FloatArray, dict[str, FloatArray]]:
     """Times [m] in s, and the inputs [m] by name that a log, its path or a DataFrame holds."""
-    if _is_frame(given):
+    if is_frame(given):
         return _columns_of_frame(model, given)
     platform = model.platform
     if not (isinstance(given, str | Path) or _is_log(given)):
@@ -184,13 +185,20 @@ def _columns(model: Model, given: Any) -> tuple[FloatArray, dict[str, FloatArray
 
 
 def _columns_of_frame(model: Model, frame: Any) -> tuple[FloatArray, dict[str, FloatArray]]:
-    clock = next((c for c in TIME_COLUMNS if c in frame.columns), None)
-    time = frame.index if clock is None else frame[clock]
     names = [name for name in model.input_names if name in frame.columns]
     if not names:
         raise InputError(
             f"The DataFrame has the columns {', '.join(map(str, frame.columns))}; name those of the"
             f" inputs {', '.join(model.input_names)}."
         )
+    return columns_of_frame(frame, names)
+
+
+def columns_of_frame(frame: Any, names: Sequence[str]) -> tuple[FloatArray, dict[str, FloatArray]]:
+    """Times [m] in s of a DataFrame, from its column of times or its index, and the columns [m]
+    `names`. Raises InputError for what is no number.
+    """
+    clock = next((c for c in TIME_COLUMNS if c in frame.columns), None)
+    time = frame.index if clock is None else frame[clock]
     columns = {name: _numbers(frame[name], f"Column '{name}'") for name in names}
     return _numbers(time, "Time of the DataFrame"), columns

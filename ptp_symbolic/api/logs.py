@@ -1,9 +1,13 @@
 """A measured log as an object: signals by name, a table and a plot."""
 
-from collections.abc import Iterable, Mapping
+import csv
+import itertools
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from functools import cached_property
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -12,15 +16,18 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.api.display import Displayed, Table
 from ptp_symbolic.api.extras import extra_library
+from ptp_symbolic.api.inputs import columns_of_frame, is_frame
 from ptp_symbolic.api.machine import Source, platform_of
-from ptp_symbolic.errors import path_of, unknown, wrong_type
+from ptp_symbolic.errors import InputError, path_of, unknown, wrong_type
 from ptp_symbolic.numeric import data
-from ptp_symbolic.platform import SignalDeclaration
+from ptp_symbolic.numeric.data.log import raw_numbers
+from ptp_symbolic.platform import Platform, SignalDeclaration
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 FloatArray = NDArray[np.float64]
+WANTED = "the path of a file or a folder, a log of `read_log`, a DataFrame, or several of them"
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -108,16 +115,52 @@ def read_log(path: Path | str, platform: Source) -> Log:
     return Log(**vars(found), signals=declared.signals, path=place)
 
 
-def log_paths(logs: Any) -> list[Path | str]:
-    """The files or folders of `logs`: one or several paths or logs that were read.
+@contextmanager
+def log_paths(platform: Platform, *several: Any) -> Iterator[list[list[Path | str]]]:
+    """For each argument its files or folders: one or several paths, logs that were read, or
+    DataFrames, which are files as long as the context lasts.
 
-    Raises InputError for what is neither.
+    Raises InputError for what is none of these.
     """
-    wanted = "the path of a file or a folder, a log of `read_log`, or several of them"
-    several = [logs] if isinstance(logs, str | Path | Log) else logs
-    if not isinstance(several, Iterable):
-        raise wrong_type("A log", logs, wanted)
-    return [log.path if isinstance(log, Log) else path_of(log, "A log", wanted) for log in several]
+    with TemporaryDirectory() as folder:
+        count = itertools.count(1)
+
+        def path(log: Any) -> Path | str:
+            if isinstance(log, Log):
+                return log.path
+            if is_frame(log):
+                return _written(log, platform, Path(folder) / f"frame_{next(count)}.csv")
+            return path_of(log, "A log", WANTED)
+
+        yield [[path(log) for log in _each(logs)] for logs in several]
+
+
+def _each(logs: Any) -> Iterable[Any]:
+    if isinstance(logs, str | Path | Log) or is_frame(logs):
+        return [logs]
+    if not isinstance(logs, Iterable):
+        raise wrong_type("A log", logs, WANTED)
+    return logs
+
+
+def _written(frame: Any, platform: Platform, path: Path) -> Path:
+    """`path`, at which a DataFrame stands as a log of `platform`."""
+    lacking = [s.signal for s in platform.signals if s.signal not in frame.columns]
+    if lacking:
+        raise InputError(
+            f"The DataFrame has the columns {', '.join(map(str, frame.columns))}; name columns in"
+            f" SI {', '.join(lacking)} too."
+        )
+    time, columns = columns_of_frame(frame, [s.signal for s in platform.signals])
+    table = {f"{platform.clock.column or 'time'} [s]": time} | {
+        f"{s.column} [{'1' if s.scale else s.unit}]": raw_numbers(s, columns[s.signal])
+        for s in platform.signals
+    }
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(table)
+        writer.writerows(np.column_stack(tuple(table.values())).tolist())
+    return path
 
 
 def sample(name: str) -> Path:

@@ -1,6 +1,7 @@
 """Figures of runs, logs and fits, for a notebook or a file."""
 
 import io
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -16,6 +17,7 @@ FloatArray = NDArray[np.float64]
 
 DOTS_PER_INCH = 150
 WIDTH, PANEL, EDGE = 9.0, 1.8, 0.6  # inches
+IN_A_ROW = 3  # runs
 
 
 def panels_by_unit(
@@ -44,21 +46,25 @@ def panels_by_unit(
 def measured_and_simulated(
     curves: Mapping[str, Mapping[str, Any]], hidden: Sequence[str] = ()
 ) -> Figure:
-    """Every run of `curves` in a column of its own: signals as measured, and as simulated before
-    and after the fit, but for stages that are `hidden`.
+    """Every run of `curves` in a column of its own, IN_A_ROW beside each other: signals as
+    measured, and as simulated before and after the fit, but for stages that are `hidden`.
     """
     rows = max(len(curve["signals"]) for curve in curves.values())
+    blocks, columns = math.ceil(len(curves) / IN_A_ROW), min(len(curves), IN_A_ROW)
     with matplotlib.rc_context(STYLE):
-        figure = Figure(
-            figsize=(max(WIDTH, 3.5 * len(curves)), EDGE + PANEL * rows), layout="constrained"
-        )
-        grid = figure.subplots(rows, len(curves), squeeze=False)
-        for column, curve in zip(grid.T, curves.values(), strict=True):
+        size = (max(WIDTH, 3.5 * columns), (EDGE + PANEL * rows) * blocks)
+        figure = Figure(figsize=size, layout="constrained")
+        grid = figure.subplots(rows * blocks, columns, squeeze=False)
+        for k, curve in enumerate(curves.values()):
+            first = k // IN_A_ROW * rows
+            column = grid[first : first + rows, k % IN_A_ROW]
             column[0].set_title(f"{curve['run']} ({curve['set']})")
             for axes, (name, signal) in zip(column, curve["signals"].items(), strict=False):
                 _draw(axes, curve["time"], signal, hidden)
                 axes.set_ylabel(f"{name} [{signal['unit']}]")
             column[-1].set_xlabel("time [s]")
+        for axes in grid[-rows:, (len(curves) - 1) % IN_A_ROW + 1 :].flat:
+            axes.remove()
         grid[0, 0].legend(loc="upper right", frameon=False)
     return figure
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from ptp_symbolic.workflows.result import Output
 
-Logs = str | Path | Log | Iterable[str | Path | Log]
+Logs = str | Path | Log | Iterable[Any]  # or DataFrames
 Progress = Callable[[str], None]
 
 
@@ -244,11 +244,12 @@ class FrictionMap(_Result):
 
 
 def fit(platform: Source, logs: Logs, *, progress: Progress = _silent) -> FitResult:
-    """Fit the free parameters of `platform` (what `load` takes) to all `logs`: files, folders, or
-    logs of `read_log`.
+    """Fit the free parameters of `platform` (what `load` takes) to all `logs`: files, folders,
+    patterns such as "runs/*.csv", logs of `read_log`, or pandas DataFrames.
 
-    `progress` is called with a line for every stage. Raises InputError for logs and platforms that
-    do not fit each other.
+    A DataFrame has every signal that the platform declares as a column in SI, and the time in s as
+    a column `time` or as its index. `progress` is called with a line for every stage. Raises
+    InputError for logs and platforms that do not fit each other.
 
     >>> import ptp_symbolic as ptp
     >>> folder = ptp.sample("tilted_base")
@@ -257,7 +258,9 @@ def fit(platform: Source, logs: Logs, *, progress: Progress = _silent) -> FitRes
     """
     from ptp_symbolic.workflows.fit import fit_platform
 
-    return FitResult(fit_platform(platform_of(platform), log_paths(logs), progress))
+    declared = platform_of(platform)
+    with log_paths(declared, logs) as (files,):
+        return FitResult(fit_platform(declared, files, progress))
 
 
 def diagnose(
@@ -275,12 +278,12 @@ def diagnose(
     """Fit `platform` to the logs `train`, find the effect that is missing, and validate it on the
     logs `validate`, which are never fitted.
 
-    `platform` is what `load` takes; logs are files, folders, or logs of `read_log`. The search ends
-    with what it has tried when it has simulated so many samples (4e8, times `effort`), which
-    is the same on every machine, and after `time_limit` s (None: 900) at the latest; with
-    `black_box` the result is compared with black-box models. What was evaluated is written into the
-    folder `keep` meanwhile, and into the folder of the result; `resume` names such a folder, or the
-    evidence.npz in it, to go on from. Raises InputError for logs and platforms that do not fit each
+    `platform` is what `load` takes; logs are what `fit` takes. The search ends with what it has
+    tried when it has simulated so many samples (4e8, times `effort`), which is the same on every
+    machine, and after `time_limit` s (None: 900) at the latest; with `black_box` the result is
+    compared with black-box models. What was evaluated is written into the folder `keep` meanwhile,
+    and into the folder of the result; `resume` names such a folder, or the evidence.npz in it, to
+    go on from. Raises InputError for logs and platforms that do not fit each
     other, for a run in both parts, for limits that are none, and for evidence of other logs,
     another platform or another version.
 
@@ -293,11 +296,12 @@ def diagnose(
     """
     from ptp_symbolic.workflows.diagnosis import diagnose_platform
 
-    return Diagnosis(
-        diagnose_platform(
-            platform_of(platform),
-            log_paths(train),
-            log_paths(validate),
+    declared = platform_of(platform)
+    with log_paths(declared, train, validate) as (fitted, judging):
+        found = diagnose_platform(
+            declared,
+            fitted,
+            judging,
             progress,
             rivals=black_box,
             time_limit=None if time_limit is None else number_of(time_limit, "`time_limit`", "s"),
@@ -305,7 +309,7 @@ def diagnose(
             resume=None if resume is None else path_of(resume, "`resume`", FOLDER),
             keep=None if keep is None else path_of(keep, "`keep`", FOLDER),
         )
-    )
+    return Diagnosis(found)
 
 
 def experiment(
@@ -370,7 +374,8 @@ def experiment(
         int(number_of(tries, "`tries`")),
         int(number_of(seed, "`seed`")),
     )
-    return Experiment(design_experiment(declared, request, log_paths(logs), progress))
+    with log_paths(declared, logs) as (files,):
+        return Experiment(design_experiment(declared, request, files, progress))
 
 
 def friction_map(

@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from ptp_symbolic.cli.declared import note_defaults
-from ptp_symbolic.cli.lists import print_table
+from ptp_symbolic.cli.lists import print_table, show_table
 from ptp_symbolic.cli.progress import progress_line
 from ptp_symbolic.errors import InputError
 
@@ -122,7 +122,6 @@ def _print_platform(found: Mapping[str, Any]) -> None:
 
 
 def _print_logs(summary: Mapping[str, Any]) -> None:
-    from rich.console import Console
     from rich.table import Table
 
     for text in summary["remarks"]:
@@ -142,7 +141,7 @@ def _print_logs(summary: Mapping[str, Any]) -> None:
             )
         for signal in log["signals"]:
             signals.add_row(*_signal_cells(signal, summary["units"][signal["name"]]))
-        Console().print(signals)
+        show_table(signals)
     click.echo(LEGEND)
     same = summary["repeatability"]
     if same is None and len(summary["logs"]) > 1:
@@ -170,7 +169,6 @@ def _signal_cells(signal: Mapping[str, Any], unit: str) -> list[str]:
 
 
 def _print_visible(summary: Mapping[str, Any]) -> None:
-    from rich.console import Console
     from rich.table import Table
 
     if not summary["simulates"]:
@@ -189,4 +187,4 @@ def _print_visible(summary: Mapping[str, Any]) -> None:
         elif row["largest"] is not None:
             size = f"a limit of {row['largest']:.3g} {row['unit']} or less"
         table.add_row(row["effect"] or "declared", row["parameter"], size)
-    Console().print(table)
+    show_table(table)

@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from ptp_symbolic.cli.declared import note_defaults, refuse_own_folder
+from ptp_symbolic.cli.lists import show_table
 from ptp_symbolic.cli.progress import progress_line
 
 
@@ -235,7 +236,6 @@ def _print_rivals(summary: Mapping[str, Any]) -> None:
 
 
 def _print_errors(summary: Mapping[str, Any]) -> None:
-    from rich.console import Console
     from rich.table import Table
 
     from ptp_symbolic.numeric.diagnose.summary import over
@@ -253,7 +253,7 @@ def _print_errors(summary: Mapping[str, Any]) -> None:
                 for when in ("before", "after", "noise_floor")
             ]
             table.add_row(run, *(_written(cell[key], unit) for cell in cells))
-        Console().print(table)
+        show_table(table)
     click.echo(f"Error: {errors['definition']}.")
 
 

@@ -9,6 +9,7 @@ import click
 
 from ptp_symbolic.cli.declared import note_defaults
 from ptp_symbolic.cli.diagnose import SeveralValues
+from ptp_symbolic.cli.lists import show_table
 from ptp_symbolic.cli.progress import progress_line
 from ptp_symbolic.cli.simulate import initial_states
 from ptp_symbolic.errors import InputError
@@ -105,7 +106,6 @@ def _print_input(summary: Mapping[str, Any]) -> None:
 
 
 def _print_separation(summary: Mapping[str, Any]) -> None:
-    from rich.console import Console
     from rich.table import Table
 
     if not summary["separation"]:
@@ -116,7 +116,7 @@ def _print_separation(summary: Mapping[str, Any]) -> None:
         sigmas = (f"{pair[key]:.3g}" for key in ("before", "run", "after"))
         shares = " to ".join(f"{100.0 * pair[k]:.0f} %" for k in ("share_before", "share_after"))
         table.add_row(pair["machine"], pair["other"], *sigmas, shares)
-    Console(width=120).print(table)
+    show_table(table)
     least = min(pair["run"] for pair in pairs)
     if not summary["separable"]:
         click.echo(f"No input tried separates them within the limits: {least:.2g} sigmas at best.")
@@ -131,7 +131,6 @@ def _print_separation(summary: Mapping[str, Any]) -> None:
 
 
 def _print_parameters(summary: Mapping[str, Any]) -> None:
-    from rich.console import Console
     from rich.table import Table
 
     wanted = summary["for_parameters"]
@@ -145,4 +144,4 @@ def _print_parameters(summary: Mapping[str, Any]) -> None:
             )
             mark = "> " if parameter in wanted else "  "
             table.add_row(mark + parameter, f"{row['value']:.4g}", *cells, row["unit"])
-        Console().print(table)
+        show_table(table)

@@ -6,6 +6,7 @@ from typing import Any
 
 import click
 
+from ptp_symbolic.cli.lists import show_table
 from ptp_symbolic.platform import AXES
 
 
@@ -81,7 +82,6 @@ def _check_axis(source: str, axis: str, points: Path, rate: str) -> None:
 
 
 def _print(summary: Mapping[str, Any]) -> None:
-    from rich.console import Console
     from rich.table import Table
 
     rms = summary["rms"]
@@ -96,7 +96,7 @@ def _print(summary: Mapping[str, Any]) -> None:
     for name, of in summary["parameters"].items():
         ends = ["open" if of[end] is None else f"{of[end]:.4g}" for end in ("low", "high")]
         table.add_row(name, f"{of['value']:.4g}", " to ".join(ends), of["unit"])
-    Console().print(table)
+    show_table(table)
     members = Table("parameters", "rms", "cross-validated", "p", "law", box=None)
     for row in summary["members"]:
         if row["p_value"] is not None:
@@ -104,6 +104,6 @@ def _print(summary: Mapping[str, Any]) -> None:
             cells = (f"{row['rms']:.3g}", left_out, f"{row['p_value']:.2g}", row["member"])
             members.add_row(str(row["parameters"]), *cells)
     click.echo("Laws tested, the named one last (p: F tests against all larger laws together):")
-    Console().print(members)
+    show_table(members)
     for text in summary["remarks"]:
         click.echo(f"Note: {text}")

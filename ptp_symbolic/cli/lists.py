@@ -2,9 +2,12 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
+
+if TYPE_CHECKING:
+    from rich.table import Table
 
 PIPE_WIDTH = 10_000
 
@@ -18,16 +21,22 @@ def _show(rows: Sequence[Mapping[str, str]], as_json: bool) -> None:
 
 def print_table(rows: Sequence[Mapping[str, str]]) -> None:
     """One row per line, names whole; only on a terminal the last columns wrap to its width."""
-    from rich.console import Console
     from rich.markup import escape
     from rich.table import Table
 
-    console = Console()
     table = Table(box=None, pad_edge=False)
     for number, heading in enumerate(rows[0]):
         table.add_column(heading, no_wrap=number == 0, overflow="fold")
     for row in rows:
         table.add_row(*map(escape, row.values()))
+    show_table(table)
+
+
+def show_table(table: "Table") -> None:
+    """Print a table to the width of a terminal; into a pipe or a file, as wide as it is."""
+    from rich.console import Console
+
+    console = Console()
     if console.is_terminal:
         console.print(table)
         return
@@ -78,7 +87,7 @@ def _explain(name: str, as_json: bool) -> None:
         for need in kind["needs"]:
             own = [source for source in need["from"] if " " not in source]
             more = ": declare it too" if len(own) == 1 else ": declare one of them too" * bool(own)
-            click.echo(f"  needs {need['quantity']}, from {' or '.join(need['from'])}{more}")
+            click.echo(f"  needs {' or '.join(need['from'])} ({need['quantity']}){more}")
         if kind["separating_experiment"]:
             click.echo(f"  to separate it: {kind['separating_experiment']}")
         if kind["parameters"]:

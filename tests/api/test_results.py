@@ -2,6 +2,7 @@
 
 import json
 import pickle
+import re
 from pathlib import Path
 
 import numpy as np
@@ -146,6 +147,27 @@ def test_logs_that_were_read_are_fitted_as_their_files_are(fitted: ptp.FitResult
     assert {n: e.value for n, e in again.parameters.items()} == {
         n: e.value for n, e in fitted.parameters.items()
     }
+
+
+def test_frames_are_logs_whatever_the_columns_of_files(
+    fitted: ptp.FitResult, tmp_path: Path
+) -> None:
+    logs = [ptp.read_log(p, PLATFORM) for p in sorted((SAMPLE / "train").glob("*.csv"))]
+    frames = [log.to_pandas() for log in logs]
+    raw = re.sub(r'column = "([^"]+)"', r'column = "raw \1"', PLATFORM.read_text())
+    head, signal, rest = raw.partition('role = "output"')
+    scaled = tmp_path / "scaled.toml"
+    scaled.write_text(f"{head}{signal}\nscale = -0.125\noffset = 3.0{rest}")
+    for platform in (PLATFORM, scaled):
+        again = ptp.fit(platform, frames)
+        assert list(again.error["after"]["by_run"]) == ["frame_1", "frame_2"]
+        for name, known in fitted.parameters.items():
+            low, high = known.interval
+            assert again.parameters[name].value == pytest.approx(
+                known.value, abs=1e-3 * (high - low)
+            )
+    with pytest.raises(ptp.InputError, match="name columns in SI theta_pan"):
+        ptp.fit(PLATFORM, frames[0].drop(columns="theta_pan"))
 
 
 def test_a_log_hands_out_its_signals() -> None:

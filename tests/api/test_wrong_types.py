@@ -11,7 +11,7 @@ import ptp_symbolic as ptp
 SAMPLE = ptp.sample("tilted_base")
 PLATFORM, TRAIN = SAMPLE / "platform.toml", SAMPLE / "train"
 MACHINE = "A machine is of type int; give the name of a model or a preset, the path of"
-LOG = "A log is of type int; give the path of a file or a folder, a log of `read_log`, or several"
+LOG = "A log is of type int; give the path of a file or a folder, a log of `read_log`, a DataFr"
 
 CALLS: dict[str, tuple[Callable[[], Any], str]] = {
     "load": (lambda: ptp.load(3), MACHINE),

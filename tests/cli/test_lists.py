@@ -36,7 +36,7 @@ def test_friction_has_its_parameters_with_units_and_bounds(call) -> None:
     assert "F_c_<axis>  N m        none: declare it  0 to 10000" in text
     assert "to separate it: Crawl through standstill" in text
     needs = call("effects", "direction_dependent_friction").out
-    assert "needs coulomb_torque_<axis>, from csvs_friction" in needs
+    assert "needs csvs_friction" in needs
 
 
 def test_an_unknown_effect_is_refused_with_the_nearest(call) -> None:
@@ -54,6 +54,7 @@ def test_an_unknown_effect_is_refused_with_three_near_ones_and_where_all_are(cal
 
 def test_what_an_effect_needs_says_what_to_declare(call) -> None:
     told = call("effects", "torque_proportional_loss").out
-    assert "transmitted_torque_<axis>, from any axis without prescribed_motion" in told
+    assert "needs any axis without prescribed_motion and without rigid backlash (transm" in told
     told = call("effects", "pwm_drive").out
-    assert "from dc_motor or linear_actuator: declare one of them too" in told
+    assert "needs dc_motor or linear_actuator (" in told
+    assert "): declare one of them too" in told

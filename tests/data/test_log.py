@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.data import Log, read_inputs, read_log, read_logs
+from ptp_symbolic.numeric.data import Log, log_files, read_inputs, read_log, read_logs
 from ptp_symbolic.platform import Platform, SignalDeclaration
 
 PLATFORM = Platform(
@@ -259,6 +259,22 @@ def test_files_and_folders_are_read_in_order_with_names_of_their_own(tmp_path: P
         write(tmp_path, GOOD, name)
     logs = read_logs([tmp_path / "one" / "train", tmp_path / "two" / "train"], PLATFORM)
     assert [log.name for log in logs] == ["one/train/a", "two/train/a"]
+
+
+def test_a_pattern_stands_for_the_logs_that_it_matches(tmp_path: Path) -> None:
+    for name in ("b1.csv", "b2.csv", "c.csv", "more/b3.csv", "odd/a[1].csv"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        write(tmp_path, GOOD.replace("0.1", f"0.1{len(name)}"), name)
+
+    def found(pattern: str) -> list[str]:
+        return [file.relative_to(tmp_path).as_posix() for file in log_files([tmp_path / pattern])]
+
+    assert found("b*.csv") == ["b1.csv", "b2.csv"]
+    assert found("**/b?.csv") == ["b1.csv", "b2.csv", "more/b3.csv"]
+    assert found("mo*") == ["more/b3.csv"]
+    assert found("odd/a[1].csv") == ["odd/a[1].csv"]
+    with pytest.raises(InputError, match=r"d\*\.csv: no file has such a name"):
+        found("d*.csv")
 
 
 def test_lists_without_logs_or_with_one_twice_are_refused(tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from glob import glob
 from itertools import islice
 from pathlib import Path
 
@@ -454,6 +455,7 @@ IN_FOLDERS = (
     ".xlsx",
     *BAGS,
 )  # taken from a folder; others may be anything
+PATTERN = "*?["  # what makes a path a pattern of several
 AND = "+"  # between files that hold one run together
 
 
@@ -512,9 +514,16 @@ def stored_at(path: Path) -> list[Path]:
 
 
 def files_at(path: Path) -> list[Path]:
-    """The logs at `path`: itself, or those of a folder. Raises InputError where it has none."""
+    """The logs at `path`: itself, those of a folder, or where there is no such file, those that a
+    pattern like runs/*.csv matches. Raises InputError where there is none.
+    """
     if not path.is_dir() or is_bag(path):
-        return [path]
+        if not set(str(path)) & set(PATTERN) or path.exists():
+            return [path]
+        matching = [Path(found) for found in sorted(glob(str(path), recursive=True))]
+        if not matching:
+            raise InputError(f"{path}: no file has such a name; give the path of a log.")
+        return [file for found in matching for file in files_at(found)]
     files = [f for f in path.iterdir() if f.suffix.lower() in IN_FOLDERS or is_bag(f)]
     files = sorted(file for file in files if not file.name.startswith("."))
     if not files:
