@@ -32,17 +32,6 @@ def _contribute(place: Place) -> Contribution:
     )
 
 
-def passive_up_to(values: dict[str, float], axis: str) -> float:
-    """Rate in rad/s up to which the friction surely takes energy out (inf: at every rate).
-
-    Bliman and Sorine (1995): sigma1 may not exceed 4 sigma0 g(v) / |v|; the level g is at least
-    the smaller of Coulomb and static torque.
-    """
-    least = min(values[f"F_c_{axis}"], values[f"F_s_{axis}"])
-    damping = values[f"sigma1_{axis}"]
-    return 4 * values[f"sigma0_{axis}"] * least / damping if damping > 0.0 else float("inf")
-
-
 LUGRE_FRICTION = Effect(
     id="lugre_friction",
     title="LuGre friction",
