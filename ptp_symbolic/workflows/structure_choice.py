@@ -279,7 +279,8 @@ def _searched(
     brief: bool,
 ) -> Searched:
     """Search for terms in a structure, begun at the values that it was fitted with, or at those
-    that another search ended with.
+    that another search ended with. Once the time is over, or where the structure is enough, it has
+    no candidates.
     """
     begun = platform
     if structure is not None:
@@ -289,8 +290,10 @@ def _searched(
             values = {name: there.get(name, value) for name, value in values.items()}
         begun = variants.extended(platform, (), values, ())
     try:
-        lacks_nothing = structure is not None and _is_enough(structure, platform)
-        model = model_of(begun if lacks_nothing else variants.with_candidates(begun))
+        is_alone = structure is not None and (
+            logs.allowance.is_out_of_time or _is_enough(structure, platform)
+        )
+        model = model_of(begun if is_alone else variants.with_candidates(begun))
     except InputError as error:  # a candidate that cannot be beside the structure
         logs.progress(f"no terms are searched for: {error}")
         model = model_of(begun)

@@ -15,9 +15,13 @@ from ptp_symbolic.numeric.diagnose.structures import (
     by_fit,
     is_better,
 )
+from ptp_symbolic.numeric.identify import evidence
 from ptp_symbolic.numeric.identify.windows import cut, parted_like
 from ptp_symbolic.platform import Platform, read_platform
+from ptp_symbolic.workflows import structure_choice
 from ptp_symbolic.workflows.preparation import model_of, problem_for, workers
+from ptp_symbolic.workflows.structure_choice import chosen_structure
+from ptp_symbolic.workflows.structure_fits import Logs
 
 R, L, K_T, J_MOTOR, RATIO = 3.0, 4e-3, 0.06, 4e-6, 100.0
 J_LOAD, DRAG, STIFFNESS, DAMPING = 0.1, 0.5, 60.0, 0.3
@@ -179,3 +183,24 @@ def test_a_structure_goes_on_from_the_values_of_one_that_contains_it_and_keeps_w
     values = led.fitted.trial.values
     assert values["k_shaft_pan"] / values["J_pan"] == pytest.approx(STIFFNESS / J_LOAD, rel=0.01)
     assert kept.fitted.trial.fit.cost <= led.fitted.trial.fit.cost * (1.0 + 1e-9)
+
+
+@pytest.mark.long
+def test_once_the_time_is_over_a_structure_that_fits_is_named_without_a_search_for_terms(
+    declared: tuple[Platform, list[Path]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    platform, paths = declared
+    *train, validate = read_logs(log_files(paths), platform)
+    monkeypatch.setattr(structure_choice, "_is_enough", lambda structure, platform: False)
+
+    def say(text: str) -> None:
+        if text.startswith("fitting the better"):
+            monkeypatch.setattr(evidence.time, "monotonic", lambda: np.inf)
+
+    with workers() as executor:
+        allowance = evidence.Allowance(seconds=1e6)
+        logs = Logs(tuple(train), (validate,), executor, say, allowance)
+        choice = chosen_structure(platform, logs)
+    assert choice.is_cut_short
+    assert choice.chosen.keys == ("shaft_compliance@pan",)
+    assert all(c.is_declared_value for c in choice.chosen.found.problem.candidates)
