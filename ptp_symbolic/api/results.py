@@ -245,7 +245,7 @@ class FrictionMap(_Result):
 
 def fit(platform: Source, logs: Logs, *, progress: Progress = _silent) -> FitResult:
     """Fit the free parameters of `platform` (what `load` takes) to all `logs`: files, folders,
-    patterns such as "runs/*.csv", logs of `read_log`, or pandas DataFrames.
+    patterns such as ``runs/*.csv``, logs of `read_log`, or pandas DataFrames.
 
     A DataFrame has every signal that the platform declares as a column in SI, and the time in s as
     a column `time` or as its index. `progress` is called with a line for every stage. Raises

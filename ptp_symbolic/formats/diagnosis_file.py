@@ -63,16 +63,18 @@ def diagnosis_schema() -> Schema:
             ("outputs", "torques"), "What values and intervals belong to: simulation or regression."
         ),
         "added": list_of(_added(), "The effects that were named."),
-        "ranking": list_of(_row(), "Every candidate that was compared, the best first."),
+        "ranking": list_of(
+            _row(), "Structures, then sets, the best first; then what was not tried."
+        ),
         "error": record({"definition": TEXT, "train": _part(), "validate": _part()}),
         "repeatability": or_none(_repeatability(), "How well runs with equal inputs agree."),
         "residual_tests": list_of(_test(), "Whiteness and independence of the residuals."),
         "fit": record({when: _fit() for when in ("before", "after")}),
         "held_out": or_none(GAIN),
-        "why": list_of(_reason(), "The rules that decided the verdict, with their numbers."),
+        "why": list_of(_reason(), "The rules that are numbers: gains, and what remains."),
         "refused": table_of(TEXT, "What explained a part and was not named, with the reason."),
         "remainder": or_none(_remainder(), "What the residual torque depends on."),
-        "hints": list_of(TEXT, "The same in words."),
+        "hints": list_of(TEXT, "What remains, in words, and what was not tried."),
         "black_box": or_none({"type": "object"}, "Models without physics, beside."),
         "windows": or_none(_windows(), "The windows into which runs were cut."),
         "material": said(

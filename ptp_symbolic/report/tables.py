@@ -195,15 +195,16 @@ def parameter_rows(diagnosis: Record) -> list[dict[str, Any]]:
 def ranking(diagnosis: Record, key: str) -> dict[str, Any]:
     """Candidates in the order of their error on the training runs, and the marks beside it.
 
-    Those that were not fitted, and have no such error, are apart. `closest` is the best fit in the
-    order of the diagnosis where nothing was added. `margin` is an error over the smallest.
+    Those that were not fitted, and have no such error, are apart. `closest` is the first set in
+    the order of the diagnosis where nothing was added. `margin` is an error over the smallest.
     `clipped`: some error lies beyond the right end of the axis.
     """
     marks = {s: error_of(diagnosis, "train", s).get(key) for s in ("before", "noise_floor")}
     rows = [dict(candidate) for candidate in diagnosis.get("ranking") or []]
     fitted = [row for row in rows if usable(row.get("train_error_after"))]
     unexplained = diagnosis["verdict"] == "unexplained"
-    closest = fitted[0] if unexplained and fitted else None
+    sets = [row for row in fitted if not row.get("structure")]
+    closest = sets[0] if unexplained and sets else None
     fitted.sort(key=lambda row: row["train_error_after"])
     errors = [row["train_error_after"] for row in fitted]
     # a refit that ran away must not squeeze all others into a corner

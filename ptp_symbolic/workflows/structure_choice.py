@@ -10,7 +10,12 @@ from typing import Any
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import variants
 from ptp_symbolic.models.structures import Rebuilt, pairs, structures
-from ptp_symbolic.numeric.diagnose.fitted_model import SearchProblem, deviances, ranked
+from ptp_symbolic.numeric.diagnose.fitted_model import (
+    FittedModel,
+    SearchProblem,
+    deviances,
+    ranked,
+)
 from ptp_symbolic.numeric.diagnose.gain import (
     Gain,
     gain,
@@ -18,7 +23,7 @@ from ptp_symbolic.numeric.diagnose.gain import (
     is_validated,
     simulated_freely,
 )
-from ptp_symbolic.numeric.diagnose.groups import Alternative, confusable, is_materially_better
+from ptp_symbolic.numeric.diagnose.groups import Alternative, confusable
 from ptp_symbolic.numeric.diagnose.noise_floor import leaves_noise_alone, noise_floor_of
 from ptp_symbolic.numeric.diagnose.refits import is_near_noise_floor
 from ptp_symbolic.numeric.diagnose.search import search
@@ -337,20 +342,23 @@ def _chosen(
         quiet = outcome.verdict.word not in (PARTLY, UNEXPLAINED)
         problem = outcome.found.problem
         earned, why = why_rejected(structure, problem, final, without, quiet, len(others))
-        unconfirmed = on_runs_of(terms.found.problem, terms.found.chosen, final.fit.runs)
-        if why is None and is_materially_better(gain(unconfirmed, final), 1, problem.material):
+        if why is None and is_beaten_by_terms(final, terms, problem.material):
             why = f"{' + '.join(terms.found.chosen.keys)} predicts better, but is not confirmed"
         if why is None:
             named = _with_structure(outcome, terms, earned, others, logs)
-            if _is_borne_out(named, terms, quiet):
+            if _is_borne_out(named, quiet):
                 accepted.append(named)
                 continue
             why = "reduces the error of the validation runs too little, or not significantly"
-        if quiet and terms.verdict.final.candidates:
-            against = gain(without, final)
-            if not is_materially_better(against, 1, structure.problem.material):
-                candidates = (*structure.added, *final.candidates)
-                as_good.append(Alternative(replace(final, candidates=candidates), against))
+        other = final if quiet else outcome.found.chosen
+        by_terms = on_runs_of(terms.found.problem, terms.verdict.final, other.fit.runs)
+        if terms.verdict.final.candidates and (
+            quiet or beats_terms(other, by_terms, problem.material)
+        ):
+            against = gain(by_terms, other)
+            if not against.is_better(problem.material):
+                candidates = (*structure.added, *other.candidates)
+                as_good.append(Alternative(replace(other, candidates=candidates), against))
         refused[structure] = why
     if accepted:
         best = ranked([o.verdict.final for o in accepted])[0] if len(accepted) > 1 else None
@@ -358,6 +366,20 @@ def _chosen(
     if as_good:
         return _beside(terms, as_good), refused
     return terms, refused
+
+
+def is_beaten_by_terms(final: FittedModel, terms: Outcome, material: float) -> bool:
+    """Whether the terms found in the declared structure predict better, confirmed or not."""
+    return gain(
+        on_runs_of(terms.found.problem, terms.found.chosen, final.fit.runs), final
+    ).is_better(material)
+
+
+def beats_terms(other: FittedModel, named: FittedModel, material: float) -> bool:
+    """Whether what was found in a structure, confirmed or not, predicts better than `named` terms
+    of the declared one, beside which more than noise remains.
+    """
+    return gain(other, named).is_better(material)
 
 
 def _beside(terms: Outcome, as_good: Sequence[Alternative]) -> Outcome:
@@ -417,12 +439,10 @@ def _declared_validation(terms: Outcome, after: Fit, logs: Logs) -> Fit:
     return simulated_freely(problem, parted_like(problem.model, whole, after.runs), declared.values)
 
 
-def _is_borne_out(named: Outcome, terms: Outcome, quiet: bool) -> bool:
-    """Whether the validation runs bear out the structure beside what terms alone explain."""
+def _is_borne_out(named: Outcome, quiet: bool) -> bool:
+    """Whether the validation runs bear out the final model, structure and terms together."""
     held_out = named.verdict.held_out
-    if held_out is None:
-        return False
-    return is_validated(held_out, quiet, False, named.problem.material)
+    return held_out is not None and is_validated(held_out, quiet, False, named.problem.material)
 
 
 def _row(
@@ -439,8 +459,13 @@ def _row(
     elif failed:
         why = f"the fit failed: {failed}"
     else:
-        otherwise = "predicts worse than the best structure, or no better than the declared one"
-        why = refused.get(structure, otherwise)
+        why = refused.get(structure) or _why_not_followed(structure, declared)
     earned = None if failed else gain_over(structure, declared)
     row = ranking_row(structure.added, structure.trial, earned, accepted, why)
     return {**row, "structure": list(structure.keys)}
+
+
+def _why_not_followed(structure: FittedStructure, declared: FittedStructure) -> str:
+    if gain_over(structure, declared).is_better(structure.problem.material):
+        return "predicts worse than the best structure"
+    return "predicts no better than the declared structure"

@@ -26,9 +26,9 @@ from ptp_symbolic.numeric.identify.evidence import (
     recording,
 )
 from ptp_symbolic.platform import Platform, read_platform
-from ptp_symbolic.workflows import structure_choice, structure_fits
+from ptp_symbolic.workflows import preparation, structure_choice, structure_fits
 from ptp_symbolic.workflows.diagnosis import SAMPLES
-from ptp_symbolic.workflows.preparation import material_of, model_of, problem_for, workers
+from ptp_symbolic.workflows.preparation import model_of, problem_for, workers
 from ptp_symbolic.workflows.provenance import provenance
 from ptp_symbolic.workflows.rules import RULES, Rule, switched_off
 from ptp_symbolic.workflows.stored_evidence import FILE, Header, read_evidence, written
@@ -128,7 +128,7 @@ class Case:
             *_, declared, executor, _progress, allowance = rest
             key = key_of("problem", platform, own, declared)
             found = once(key, lambda: problem_for(platform, own, *rest))
-            material = material_of(platform)
+            material = preparation.material_of(platform)
             return replace(found, executor=executor, allowance=allowance, material=material)
 
         def proposed(given: SearchProblem) -> Any:

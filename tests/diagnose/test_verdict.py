@@ -288,3 +288,19 @@ def test_beside_more_than_the_usual_noise_validation_runs_gain_clearly(
     after = finished([1.2 * WAVE, 1.2 * WAVE, third * WAVE])
     earned = held_out_gain(after, before)
     assert is_validated(earned, quiet=True, unusual=unusual, material=0.1) is borne_out
+
+
+@pytest.mark.parametrize(("worse", "borne_out"), [(0, True), (3, False)])
+def test_one_window_that_gains_far_more_than_others_hides_no_gain_of_them_all(
+    worse: int, borne_out: bool
+) -> None:
+    """Eight windows that begin 3 to 600 times off and end near the noise gain 99 %, nearly all of
+    it in one of them: seven degrees of freedom exceed such a t by chance in more than 5 %, and all
+    of eight gain once in 256. Where three of them lose, neither is significant.
+    """
+    errors = [13.0, 50.0, 83.0, 3.0, 600.0, 110.0, 8.0, 45.0]
+    before = finished([size * WAVE for size in errors])
+    after = finished([(1.3 if k >= worse else 2.0 * e) * WAVE for k, e in enumerate(errors)])
+    earned = held_out_gain(after, before)
+    assert earned.chance > 0.05
+    assert is_validated(earned, quiet=True, unusual=True, material=0.1) is borne_out

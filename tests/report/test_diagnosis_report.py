@@ -99,6 +99,10 @@ def test_the_closest_fit_is_shown_with_its_figures_where_nothing_was_confirmed()
         assert text in card
     assert "98.7 % (98.5 to 98.9 %)" in card
     diagnosis = synthetic_diagnosis("unexplained")
+    of_shaft = {**diagnosis["ranking"][0], "effect": "shaft_compliance", "structure": ["shaft"]}
+    listed = {**diagnosis, "ranking": [of_shaft, *diagnosis["ranking"]]}
+    page_of_both = render_diagnosis(listed, {})
+    assert "base_tilt" in page_of_both[page_of_both.index('id="closest"') :][:400]
     diagnosis["ranking"] = [row for row in diagnosis["ranking"] if row["effect"] == "backlash"]
     assert 'id="closest"' not in render_diagnosis(diagnosis, {})
 

@@ -144,11 +144,7 @@ class _Motion:
 
     def _is_earned(self, found: Gain | None, member: Candidate) -> bool:
         tests = looked_at(self.problem.candidates, [member])
-        return (
-            found is not None
-            and found.share >= self.problem.material
-            and found.is_significant(tests)
-        )
+        return found is not None and found.is_better(self.problem.material, tests)
 
     def in_simplest_forms(
         self, candidates: Sequence[Candidate], kept: Sequence[Candidate]

@@ -67,7 +67,6 @@ from ptp_symbolic.numeric.identify.constants import (
     FAR,
     FEWEST_BLOCKS,
     LITTLE,
-    MATERIAL,
     MOST,
     SAME,
 )
@@ -330,7 +329,7 @@ def contradicts_its_law(
     added = change[0] * growing[:, None]
     beside_all, beside_others = (projected_off(added, t)[:, 0] for t in (table, table[:, ~mine]))
     whole = own + beside_others
-    material = beside_all @ beside_all > MATERIAL * (whole @ whole)
+    material = beside_all @ beside_all > problem.material * (whole @ whole)
     scaled = 1.0 + float(own @ table[:, mine] @ change[1:][mine]) / float(own @ own)
     most = abs(change[0]) > MOST * abs(scaled)
     return bool(clear and (material and most if loosely else material or most))
@@ -488,13 +487,13 @@ def _weakness(
     """
     floor = noise_floor_of(stepwise.problem, trial, stepwise.propagated)
     quiet = leaves_noise_alone(trial, floor)
-    is_within_input_noise = replace(floor, propagated=stepwise.input_noise_for(trial))
+    by_inputs = replace(floor, propagated=stepwise.input_noise_for(trial))
     by_gain = sorted(steps, key=lambda s: s.gain.share)
     refit = partial(_without_run, stepwise.problem, trial)
     for step in by_gain:
         if not stepwise.is_needed(step):
             return Weakness(step, _too_little(step.gain, stepwise.problem.material))
-        if is_within_noise_of_inputs(step.without, is_within_input_noise):
+        if is_within_noise_of_inputs(step.without, by_inputs):
             return Weakness(step, "without it the residual is within the noise of the inputs")
         member = with_what_needs_it(step.candidate, trial.candidates)
         reason = why_unconfirmed(fit, member, quiet, refit)
@@ -521,11 +520,7 @@ def _doubt_beside_residual(problem: SearchProblem, trial: FittedModel, step: Ste
     imitate: the lower limit of its gain is below one half, or it reduces slow drift alone.
     """
     if not step.gain.is_most:
-        share, least = (100.0 * max(x, 0.0) for x in (step.gain.share, step.gain.lower))
-        return (
-            f"reduces the sum of squares by {share:.0f} % (lower 95 % limit {least:.0f} %), "
-            "too little while the residual exceeds the noise"
-        )
+        return f"{step.gain.in_words}, too little while the residual exceeds the noise"
     if gain_in_innovations(trial, step.without).share < problem.material:
         return "reduces slow drift alone, which other missing effects can cause as well"
     return None
@@ -535,7 +530,7 @@ def _too_little(earned: Gain, material: float) -> str:
     """Why a gain is too small for a name, which requires a `material` share."""
     if earned.share <= 0.0:
         return "does not improve the prediction of blocks left out"
-    share = f"{100.0 * earned.share:.0f} %"
     if earned.share < material:
+        share = f"{100.0 * earned.share:.0f} %"
         return f"reduces the sum of squares by {share} only; {100.0 * material:g} % are required"
-    return f"reduces the sum of squares by {share}, which is not significant"
+    return f"{earned.in_words}, which is not significant"

@@ -232,7 +232,7 @@ def parted_problem(problem: SearchProblem, trial: FittedModel) -> SearchProblem:
     """
     p = problem.model.parameter_vector(trial.values)
 
-    def parts_of(run: Run, z: FloatArray) -> tuple[Run, ...]:
+    def parts_of(run: Run, _z: FloatArray) -> tuple[Run, ...]:
         return parted_at_lost_samples(problem.model, run, p)
 
     return _in_parts(problem, trial, parts_of, "runs are parted where samples are missing")

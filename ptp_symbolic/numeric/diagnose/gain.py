@@ -102,6 +102,24 @@ class Gain:
         """Whether the gain is above zero at 5 % over so many `tests` (Bonferroni)."""
         return self.chance < FALSE_ALARM / max(tests, 1)
 
+    def is_better(self, material: float, tests: int = 1) -> bool:
+        """Whether it is a `material` share, and significant over so many `tests`."""
+        return self.share >= material and self.is_significant(tests)
+
+    def smallest_chance(self, by_values: float) -> float:
+        """The smallest of the chances of three tests, times three: of such values of parameters
+        (see `p_value`), of such better predictions of blocks, and of so many of them.
+        """
+        return min(1.0, 3.0 * min(by_values, self.chance, self.by_rank))
+
+    @property
+    def in_words(self) -> str:
+        """The share with its lower limit."""
+        limit = f"{100.0 * self.lower:.0f} %" if np.isfinite(self.lower) else "not known"
+        return (
+            f"reduces the sum of squares by {100.0 * self.share:.0f} % (lower 95 % limit {limit})"
+        )
+
 
 @recorded(Gain)
 def gain(larger: FittedModel, smaller: FittedModel) -> Gain:
@@ -253,11 +271,13 @@ def is_validated(held_out: Gain, quiet: bool, unusual: bool, material: float) ->
 
     Where all may be noise, but the residual of training runs is `unusual`, the noise is large by
     chance, or an effect is missing. Any effect follows a part of either, for seconds, in blocks
-    left out as well; the validation runs have noise of their own, and must gain significantly.
+    left out as well; the validation runs have noise of their own, and must gain significantly, by
+    how much or by how many blocks: one window that gains far more than others hides by how much.
     """
     if not quiet:
         return held_out.share >= MOST
-    return held_out.share >= material and (not unusual or held_out.is_significant(1))
+    is_clear = held_out.smallest_chance(1.0) < FALSE_ALARM
+    return held_out.share >= material and (not unusual or is_clear)
 
 
 @recorded()

@@ -137,7 +137,7 @@ def not_refuted(
     residual is within the usual propagated noise of the inputs: it would be as large if they were
     true, and another set may follow a part of it.
     """
-    worse = [is_materially_better(other.gain, len(found), material) for other in found]
+    worse = [other.gain.is_better(material, len(found)) for other in found]
     return [
         replace(other, is_within_input_noise=is_worse)
         for other, is_worse in zip(found, worse, strict=True)
@@ -154,13 +154,6 @@ def _comes_near(other: FittedModel, chosen: FittedModel) -> bool:
     return bool(np.isfinite(other.fit.cost)) and gain(chosen, other).share < MOST
 
 
-def is_materially_better(earned: Gain, tests: int, material: float) -> bool:
-    """Whether one set predicts better than another by a `material` share, significantly over so
-    many `tests`.
-    """
-    return earned.share >= material and earned.is_significant(tests)
-
-
 def better_alternative(
     chosen: FittedModel, found: Sequence[Alternative], material: float
 ) -> FittedModel | None:
@@ -168,9 +161,7 @@ def better_alternative(
     `material` share; None if none does.
     """
     tests = len(found)
-    better = [
-        r.trial for r in found if is_materially_better(gain(r.trial, chosen), tests, material)
-    ]
+    better = [r.trial for r in found if gain(r.trial, chosen).is_better(material, tests)]
     return ranked(better)[0] if better else None
 
 

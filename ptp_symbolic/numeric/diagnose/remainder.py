@@ -225,7 +225,7 @@ def _whitened(table: FloatArray, pole: float) -> FloatArray:
     return np.vstack([first, table[1:] - pole * table[:-1]])
 
 
-def pole_of(rest: FloatArray, columns: int = 1) -> float:
+def pole_of(rest: FloatArray, columns: int) -> float:
     """The pole of a residual [n] as an AR(1), corrected for its bias (Kendall, 1954), to which
     every one of the `columns` that were projected out adds as the mean does.
     """

@@ -137,14 +137,18 @@ def looked_at(candidates: Sequence[Candidate], added: Sequence[Candidate]) -> in
     return len(candidates) * math.prod(c.frequencies_compared for c in added)
 
 
-def is_earned(earned: Gain, p: float, tests: int, material: float) -> bool:
-    """Whether a gain is at least the share `material`, and significant over so many `tests` by the
-    values of its parameters (see `p_value`), or by how much better it predicts blocks, or by how
-    many (Bonferroni): parameters that trade for each other may each be anything while their effect
-    is beyond doubt.
+def is_significant(earned: Gain, p: float, tests: int) -> bool:
+    """Whether a gain is above zero, and significant over so many `tests` by the values of its
+    parameters (see `p_value`), or by how much better it predicts blocks, or by how many
+    (Bonferroni): parameters that trade for each other may each be anything while their effect is
+    beyond doubt.
     """
-    chance = 3.0 * min(p, earned.chance, earned.by_rank)
-    return earned.share >= material and earned.lower > 0.0 and chance < FALSE_ALARM / max(tests, 1)
+    return earned.lower > 0.0 and earned.smallest_chance(p) < FALSE_ALARM / max(tests, 1)
+
+
+def is_earned(earned: Gain, p: float, tests: int, material: float) -> bool:
+    """Whether a gain is at least the share `material`, and significant (see `is_significant`)."""
+    return earned.share >= material and is_significant(earned, p, tests)
 
 
 def best_of_each_set(trials: Sequence[FittedModel], best: FittedModel) -> list[FittedModel]:

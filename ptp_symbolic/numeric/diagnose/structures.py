@@ -212,8 +212,7 @@ def _is_as_good(simpler: FittedStructure, best: FittedStructure) -> bool:
 
 def is_better(one: FittedStructure, other: FittedStructure) -> bool:
     """Whether the first of two structures predicts a material share better, clearly so."""
-    earned = gain_over(one, other)
-    return earned.share >= one.problem.material and earned.is_significant(1)
+    return gain_over(one, other).is_better(one.problem.material)
 
 
 def _size(structure: FittedStructure) -> int:
@@ -283,16 +282,10 @@ def why_rejected(
     noise alone, `tests` how many structures were compared.
     """
     earned = gain(trial, without)
-    share, least = (100.0 * max(x, 0.0) for x in (earned.share, earned.lower))
     if not is_earned(earned, 1.0, tests, problem.material):
-        return (
-            earned,
-            f"reduces the sum of squares by {share:.0f} % (lower 95 % limit {least:.0f} %), which"
-            " is not significant",
-        )
+        return earned, f"{earned.in_words}, which is not significant"
     if not quiet and not earned.is_most:
-        why = f"reduces the sum of squares by {share:.0f} % (lower 95 % limit {least:.0f} %)"
-        return earned, f"{why}, too little while the residual exceeds the noise"
+        return earned, f"{earned.in_words}, too little while the residual exceeds the noise"
     first = structure.added[0]
     if not is_there(first, trial):
         return earned, f"no parameter of {first.key} is identifiable from these logs"

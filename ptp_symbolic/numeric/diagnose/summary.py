@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.diagnose.candidates import DECLARED_VALUE, Candidate
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.fitted_model import FittedModel, ranked
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain
 from ptp_symbolic.numeric.diagnose.noise_floor import NoiseFloor
@@ -492,7 +492,7 @@ def _row(search: Search, found: Verdict, trial: FittedModel) -> dict[str, Any]:
     accepted = bool(found.final.candidates) and trial.keys == found.final.keys
     elsewhere = accepted and found.is_along_motion  # that fit is not the best one of outputs
     earned = None if elsewhere else gain(trial, search.declared)
-    return ranking_row(trial.candidates, trial, earned, accepted, _why(search, found, trial))
+    return ranking_row(trial.candidates, trial, earned, accepted, _why(found, trial))
 
 
 def ranking_row(
@@ -543,7 +543,7 @@ def _unfitted(search: Search, forms: Sequence[Candidate]) -> dict[str, Any]:
     }
 
 
-def _why(search: Search, found: Verdict, trial: FittedModel) -> str:
+def _why(found: Verdict, trial: FittedModel) -> str:
     if found.final.candidates and trial.keys == found.final.keys:
         if found.is_along_motion:
             return "every effect in it is significant in the torque along the measured motion"
@@ -557,6 +557,4 @@ def _why(search: Search, found: Verdict, trial: FittedModel) -> str:
         return "; ".join(refused)
     if found.final.candidates and set(found.final.keys) < set(trial.keys):
         return "what it adds to the accepted set reduces the error too little"
-    if any(c.id.startswith(DECLARED_VALUE) for c in trial.candidates):
-        return "a changed declared value explains less than the best"
     return "predicts worse than the best"

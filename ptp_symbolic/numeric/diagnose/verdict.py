@@ -326,14 +326,19 @@ ALIKE = "alternatives that predict as well in its place"
 
 
 def reasons(found: Search, verdict: Verdict, compared: int) -> list[dict[str, Any]]:
-    """A row for every rule and what it is `about` (the key of an effect; None: the whole model):
-    the `value`, whether it has to be `at_least` or `at_most` the `limit`, and whether it `holds`.
-    `compared` is the number of structures that were fitted.
+    """A row for every rule that has a number, and what it is `about` (the key of an effect, named
+    or of the chosen set; None: the whole model): the `value`, whether it has to be `at_least` or
+    `at_most` the `limit`, and whether it `holds`. `compared` is the number of structures that were
+    fitted.
     """
     rows = []
     for candidate in verdict.final.candidates:
-        tests = _tests(found, verdict.compared, candidate, compared)
+        tests = _tests(found, candidate, compared)
         rows += _of_effect(found, verdict, candidate, tests)
+    for step in found.members:
+        if step.candidate.key not in verdict.final.keys:
+            tests = _tests(found, step.candidate, compared)
+            rows += _of_gain(found, verdict, step.candidate.key, step.gain, step.p_value, tests)
     if verdict.held_out is not None:
         least = MOST if verdict.leaves_more else found.problem.material
         rows.append(_row(None, VALIDATED, verdict.held_out.share, "at_least", least))
@@ -348,23 +353,29 @@ def _of_effect(
     found: Search, verdict: Verdict, candidate: Candidate, tests: int
 ) -> list[dict[str, Any]]:
     key, gain = candidate.key, verdict.gains[candidate.key]
+    alike = _row(key, ALIKE, len(verdict.confusable[key]), "at_most", 0)
+    if verdict.is_along_motion:  # there it is decided by the regression of the torque
+        return [
+            _row(key, SHARE, gain.share, "at_least", found.problem.material),
+            _row(key, CHANCE, gain.chance, "at_most", FALSE_ALARM / tests),
+            alike,
+        ]
+    by_values = p_value(verdict.compared, candidate.vanishing) if candidate.vanishing else 1.0
+    return [*_of_gain(found, verdict, key, gain, by_values, tests), alike]
+
+
+def _of_gain(
+    found: Search, verdict: Verdict, key: str, gain: Gain, by_values: float, tests: int
+) -> list[dict[str, Any]]:
     least = MOST if verdict.leaves_more else 0.0
-    chance = _chance(gain, verdict.compared, candidate.vanishing)
     return [
         _row(key, SHARE, gain.share, "at_least", found.problem.material),
         _row(key, CERTAIN, gain.lower, "at_least", least),
-        _row(key, CHANCE, chance, "at_most", FALSE_ALARM / tests),
-        _row(key, ALIKE, len(verdict.confusable[key]), "at_most", 0),
+        _row(key, CHANCE, gain.smallest_chance(by_values), "at_most", FALSE_ALARM / tests),
     ]
 
 
-def _chance(gain: Gain, trial: FittedModel, vanishing: Mapping[str, float]) -> float:
-    """The smallest chance of three tests, times three."""
-    by_values = p_value(trial, vanishing) if vanishing else 1.0
-    return min(1.0, 3.0 * min(by_values, gain.chance, gain.by_rank))
-
-
-def _tests(found: Search, trial: FittedModel, candidate: Candidate, compared: int) -> int:
+def _tests(found: Search, candidate: Candidate, compared: int) -> int:
     """How many were looked at: structures have no value at which they vanish."""
     if not candidate.vanishing:
         return max(compared, 1)
