@@ -8,7 +8,7 @@ Runs have variants with other inputs or fewer samples, and inputs averages over 
 import itertools
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, fields, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -122,12 +122,23 @@ def _rate_over(
     if it were the same in half of the samples.
     """
     longest = float(np.max(np.abs(time)))
-    columns = np.vander(time / longest, degree + 1, increasing=True)
-    inverse = np.linalg.pinv(columns)
-    rate = float(inverse[1] @ values) / longest
+    slope = _slope(
+        (time / longest).round(9).tobytes(), degree
+    )  # stamps are not even to the last bit
+    rate = float(slope @ values) / longest
     rounding = float(np.nan_to_num(count)) * ROUNDING
-    white = np.sqrt(max(sigma**2 - rounding**2, 0.0)) * float(np.linalg.norm(inverse[1]))
+    white = np.sqrt(max(sigma**2 - rounding**2, 0.0)) * float(np.linalg.norm(slope))
     return rate, float(np.hypot(white, 2.0 * rounding)) / longest
+
+
+@lru_cache(maxsize=4096)
+def _slope(times: bytes, degree: int) -> FloatArray:
+    """The functional [n] that gives the slope at zero of the polynomial through values at `times`,
+    the bytes of n numbers; windows of an evenly sampled log share it.
+    """
+    columns = np.vander(np.frombuffer(times), degree + 1, increasing=True)
+    slope: FloatArray = np.linalg.pinv(columns)[1]
+    return slope
 
 
 WINDOW = "#"  # in the name of a window, between that of its log and its number
