@@ -2,7 +2,8 @@
 with shafts, each effect left out in turn, and with an axis that never moves.
 
 Logs are short, and the search has next to no time: what is asked is that no kind of platform ends
-in a traceback, and that a verdict is one of those that there are.
+in a traceback, that a verdict is one of those that there are, and that nothing is missing where
+nothing was left out.
 """
 
 from dataclasses import dataclass
@@ -15,7 +16,6 @@ import pytest
 from ptp_symbolic import simulate
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.numeric.diagnose.candidates import find_candidates, with_all_they_need
-from ptp_symbolic.numeric.simulation.inputs import multisine
 from ptp_symbolic.platform import Platform, read_platform
 from ptp_symbolic.workflows.diagnosis import diagnose_platform
 
@@ -106,15 +106,14 @@ def logged(case: Case, platform: Platform, folder: Path) -> list[Path]:
     kind, _, amplitudes = INPUTS["torque" if case.drive == "torque" else "motor"]
     paths = []
     for number, frequency in enumerate((0.9, 1.1, 1.3)):
-        columns = {"time [s]": TIMES}
-        wave = multisine(amplitudes, [frequency, 2.7 * frequency])
+        waves = zip(amplitudes, (frequency, 2.7 * frequency), strict=True)
+        held = sum(a * np.sin(2.0 * np.pi * f * TIMES) for a, f in waves)
         moving = [axis for axis in case.axes if axis != case.resting]
-        found = simulate(model, TIMES, {f"{kind}_{axis}": wave for axis in moving})
+        found = simulate(model, TIMES, {f"{kind}_{axis}": (TIMES, held) for axis in moving})
+        columns = {"time [s]": TIMES}
         for axis in case.axes:
             own = axis in moving
-            waves = zip(amplitudes, (frequency, 2.7 * frequency), strict=True)
-            sines = sum(a * np.sin(2.0 * np.pi * f * TIMES) for a, f in waves)
-            columns[f"{kind}_{axis}"] = sines if own else 0.0 * TIMES
+            columns[f"{kind}_{axis}"] = held if own else 0.0 * TIMES
             angle = found[f"theta_{axis}"] if own else 0.0 * TIMES
             columns[f"theta_{axis}"] = COUNT * np.round(angle / COUNT)
         paths.append(folder / f"log{number}.csv")
@@ -130,15 +129,12 @@ def verdict_of(case: Case, folder: Path) -> str:
 
 
 @pytest.mark.long
-def test_an_axis_that_never_moves_leaves_the_other_its_verdict(tmp_path: Path) -> None:
-    case = Case(("pan", "tilt"), "torque", None, "pan")
-    assert verdict_of(case, tmp_path) == "nothing_missing"
-
-
-@pytest.mark.long
 @pytest.mark.parametrize("case", grid(), ids=str)
 def test_every_platform_comes_to_a_verdict(case: Case, tmp_path: Path) -> None:
-    assert verdict_of(case, tmp_path) in VERDICTS
+    verdict = verdict_of(case, tmp_path)
+    assert verdict in VERDICTS
+    if case.missing is None and case.resting != "tilt":  # which would fall, if it were not held
+        assert verdict == "nothing_missing"
 
 
 @pytest.mark.parametrize("missing", [None, *FRICTION])
