@@ -308,6 +308,13 @@ RULES = (
         "definition: fewest parameters of equals",
     ),
     Rule(
+        "parts of a structure",
+        "No structure that a named one contains predicts as well.",
+        _in("structure_choice", "part_as_good", package=WORKFLOWS),
+        _always(None),
+        "safety: a gap beside a shaft that is not identifiable (an antenna, a wrong name)",
+    ),
+    Rule(
         "better terms",
         "No terms of the declared structure, confirmed or not, predict significantly better.",
         _in("structure_choice", "is_beaten_by_terms", package=WORKFLOWS),

@@ -32,6 +32,7 @@ from ptp_symbolic.numeric.diagnose.structures import (
     FittedStructure,
     alternatives,
     gain_over,
+    is_better,
     named_effects,
     on_runs_of,
     why_rejected,
@@ -342,6 +343,9 @@ def _chosen(
         quiet = outcome.verdict.word not in (PARTLY, UNEXPLAINED)
         problem = outcome.found.problem
         earned, why = why_rejected(structure, problem, final, without, quiet, len(others))
+        part = part_as_good(outcome, outcomes, others) if why is None else None
+        if part is not None:
+            why = f"{' + '.join(part.keys)}, a part of it, predicts as well"
         if why is None and is_beaten_by_terms(final, terms, problem.material):
             why = f"{' + '.join(terms.found.chosen.keys)} predicts better, but is not confirmed"
         if why is None:
@@ -366,6 +370,27 @@ def _chosen(
     if as_good:
         return _beside(terms, as_good), refused
     return terms, refused
+
+
+def part_as_good(
+    outcome: Outcome, outcomes: Sequence[Outcome], others: Sequence[FittedStructure]
+) -> FittedStructure | None:
+    """A structure that the one of an outcome contains and does not predict better than; None where
+    there is none: a gap beside a shaft of which the logs tell nothing is none.
+    """
+    structure, final = outcome.structure, outcome.verdict.final
+    assert structure is not None
+    ends = {o.structure: o for o in outcomes}
+    for part in (s for s in others if s.provides < structure.provides and not s.trial.fit.failed):
+        if part in ends:
+            found = ends[part]
+            by_part = on_runs_of(found.found.problem, found.verdict.final, final.fit.runs)
+            is_more = gain(final, by_part).is_better(outcome.found.problem.material)
+        else:
+            is_more = is_better(structure, part)
+        if not is_more:
+            return part
+    return None
 
 
 def is_beaten_by_terms(final: FittedModel, terms: Outcome, material: float) -> bool:

@@ -1,6 +1,9 @@
 """An undeclared flexible shaft is found as a structure, in logs that SciPy makes of two masses."""
 
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -20,7 +23,7 @@ from ptp_symbolic.numeric.identify.windows import cut, parted_like
 from ptp_symbolic.platform import Platform, read_platform
 from ptp_symbolic.workflows import structure_choice
 from ptp_symbolic.workflows.preparation import model_of, problem_for, workers
-from ptp_symbolic.workflows.structure_choice import chosen_structure
+from ptp_symbolic.workflows.structure_choice import Outcome, chosen_structure, part_as_good
 from ptp_symbolic.workflows.structure_fits import Logs
 
 R, L, K_T, J_MOTOR, RATIO = 3.0, 4e-3, 0.06, 4e-6, 100.0
@@ -148,6 +151,26 @@ def test_a_lag_of_the_encoder_does_not_win_over_the_shaft(
     lag = fits["measurement_lag@pan",]
     assert lag not in alternatives(order[0], others)
     assert fits["harmonic_drive@pan",] not in alternatives(order[0], others), "it contains a shaft"
+
+
+@pytest.mark.early
+def test_what_contains_the_shaft_is_not_named_where_the_shaft_predicts_as_well(
+    fits: dict[tuple[str, ...], FittedStructure],
+) -> None:
+    shaft, lag, harmonic = (
+        fits[f"{effect}@pan",]
+        for effect in ("shaft_compliance", "measurement_lag", "harmonic_drive")
+    )
+
+    def ended(structure: FittedStructure) -> Outcome:
+        verdict = SimpleNamespace(final=structure.trial)
+        return cast(Any, SimpleNamespace(structure=structure, verdict=verdict, found=None))
+
+    more = replace(harmonic, provides=shaft.provides | {"a softening of it"})
+    assert part_as_good(ended(more), [ended(more)], [shaft, lag, more]) is shaft
+    assert part_as_good(ended(shaft), [ended(shaft)], [shaft, lag, more]) is None
+    worse = replace(lag, provides=frozenset())  # as if the shaft contained it
+    assert part_as_good(ended(shaft), [ended(shaft)], [worse, more]) is None
 
 
 @pytest.mark.early
