@@ -122,9 +122,8 @@ def _rate_over(
     if it were the same in half of the samples.
     """
     longest = float(np.max(np.abs(time)))
-    slope = _slope(
-        (time / longest).round(9).tobytes(), degree
-    )  # stamps are not even to the last bit
+    even = (time / longest).round(9)  # stamps are not even to the last bit
+    slope = _slope(even.tobytes(), degree)
     rate = float(slope @ values) / longest
     rounding = float(np.nan_to_num(count)) * ROUNDING
     white = np.sqrt(max(sigma**2 - rounding**2, 0.0)) * float(np.linalg.norm(slope))
