@@ -323,7 +323,7 @@ RULES = (
     ),
     Rule(
         "better structures",
-        "What a structure has, confirmed or not, is told from named terms that predict worse.",
+        "Named terms that predict worse than what a structure has form a group with it.",
         _in("structure_choice", "beats_terms", package=WORKFLOWS),
         _always(False),
         "safety: a delay in place of a lag that is not confirmed",

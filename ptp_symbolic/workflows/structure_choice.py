@@ -354,13 +354,12 @@ def _chosen(
                 accepted.append(named)
                 continue
             why = "reduces the error of the validation runs too little, or not significantly"
-        other = final if quiet else outcome.found.chosen
-        by_terms = on_runs_of(terms.found.problem, terms.verdict.final, other.fit.runs)
-        if terms.verdict.final.candidates and (
-            quiet or beats_terms(other, by_terms, problem.material)
-        ):
+        if terms.verdict.final.candidates:
+            other = final if quiet else outcome.found.chosen
+            by_terms = on_runs_of(terms.found.problem, terms.verdict.final, other.fit.runs)
             against = gain(by_terms, other)
-            if not against.is_better(problem.material):
+            is_as_good = not against.is_better(problem.material)
+            if is_as_good if quiet else beats_terms(other, by_terms, problem.material):
                 candidates = (*structure.added, *other.candidates)
                 as_good.append(Alternative(replace(other, candidates=candidates), against))
         refused[structure] = why
@@ -375,8 +374,8 @@ def _chosen(
 def part_as_good(
     outcome: Outcome, outcomes: Sequence[Outcome], others: Sequence[FittedStructure]
 ) -> FittedStructure | None:
-    """A structure that the one of an outcome contains and does not predict better than; None where
-    there is none: a gap beside a shaft of which the logs tell nothing is none.
+    """A part of the structure of an outcome that predicts as well alone; None where each predicts
+    worse. A gap may seem identified beside a shaft that is not, though the shaft is enough.
     """
     structure, final = outcome.structure, outcome.verdict.final
     assert structure is not None
