@@ -212,8 +212,8 @@ def _paired(
         found = found.over_windows_too(logs)
     if not found.quiet:
         return fitted, ()
-    finished = tuple(found.begun[k] for k in found.better)
-    return replace(fitted, begun=(*fitted.begun, *finished)), beside
+    finished = tuple(found.every[k] for k in found.better)
+    return replace(fitted, every=(*fitted.every, *finished)), beside
 
 
 def _from_what_contains_it(
@@ -285,20 +285,19 @@ def _searched(
     brief: bool,
 ) -> Searched:
     """Search for terms in a structure, begun at the values that it was fitted with, or at those
-    that another search ended with. Once the time is over, or where the structure is enough, it has
-    no candidates.
+    that another search ended with; for none where the structure is enough, or the time is over.
     """
-    begun = platform
+    begun, is_alone = platform, False
     if structure is not None:
+        is_alone = logs.allowance.is_out_of_time or _is_enough(structure, platform)
+        if is_alone and _is_all_its_own(structure, platform):
+            return Searched(platform, structure, structure.problem, structure.without_terms())
         values = structure.trial.values
         if begin is not None:
             there = begin.found.chosen.values
             values = {name: there.get(name, value) for name, value in values.items()}
         begun = variants.extended(platform, (), values, ())
     try:
-        is_alone = structure is not None and (
-            logs.allowance.is_out_of_time or _is_enough(structure, platform)
-        )
         model = model_of(begun if is_alone else variants.with_candidates(begun))
     except InputError as error:  # a candidate that cannot be beside the structure
         logs.progress(f"no terms are searched for: {error}")
@@ -323,9 +322,12 @@ def _searched(
 
 def _is_enough(structure: FittedStructure, platform: Platform) -> bool:
     """Whether a structure leaves noise alone with no effect beside those of its `platform`."""
-    return structure.is_noise_alone and len(structure.problem.model.effects) == len(
-        platform.effects
-    )
+    return structure.is_noise_alone and _is_all_its_own(structure, platform)
+
+
+def _is_all_its_own(structure: FittedStructure, platform: Platform) -> bool:
+    """Whether a structure was fitted with no effect beside those of its `platform`."""
+    return len(structure.problem.model.effects) == len(platform.effects)
 
 
 def _chosen(

@@ -10,7 +10,6 @@ from ptp_symbolic.models.structures import Rebuilt
 from ptp_symbolic.numeric.data import Log
 from ptp_symbolic.numeric.diagnose.fitted_model import side_by_side
 from ptp_symbolic.numeric.diagnose.structures import (
-    Begun,
     FittedStructure,
     begin_structure,
     by_fit,
@@ -43,20 +42,10 @@ class Fitted:
     are the `better` half, and by key why others could not be.
     """
 
-    alone: Begun
-    begun: tuple[Begun, ...]
+    declared: FittedStructure
+    every: tuple[FittedStructure, ...]
     better: tuple[int, ...]
     failed: Mapping[str, str]
-
-    @property
-    def declared(self) -> FittedStructure:
-        """The platform as declared."""
-        return self.alone.fitted
-
-    @property
-    def every(self) -> tuple[FittedStructure, ...]:
-        """All structures."""
-        return tuple(b.fitted for b in self.begun)
 
     @cached_property
     def order(self) -> list[FittedStructure]:
@@ -77,8 +66,8 @@ class Fitted:
         logs.progress("fitting structures over windows")
         return replace(
             self,
-            alone=self.alone.over_windows_too(),
-            begun=_each(Begun.over_windows_too, self.begun, self.better),
+            declared=self.declared.over_windows_too(),
+            every=_each(FittedStructure.over_windows_too, self.every, self.better),
         )
 
 
@@ -95,28 +84,28 @@ def fit_structures(
     those of the platform's: where a delay makes up for a lag, the former are right, the latter not.
     """
     logs.progress(f"fitting {len(every)} structures one step away")
-    alone = _begun(platform, None, logs, {}).finished()
-    beside = alone.fitted.trial.values if known is None else known
+    declared = _begun(platform, None, logs, {}).finished()
+    beside = declared.trial.values if known is None else known
 
-    def one(rebuilt: Rebuilt) -> Begun | str:
+    def one(rebuilt: Rebuilt) -> FittedStructure | str:
         try:
             return _begun(rebuilt.platform, rebuilt, logs, beside)
         except InputError as error:
             return f"the platform with it cannot be fitted: {error}"
 
     results = list(zip(every, side_by_side(one, every), strict=True))
-    begun = [b for _, b in results if isinstance(b, Begun)]
-    better = _better_half(begun, alone.fitted)
+    begun = [b for _, b in results if isinstance(b, FittedStructure)]
+    better = _better_half(begun, declared)
     logs.progress(f"fitting the better {len(better)} of them to their end")
-    tried = {key for b in begun for key in b.fitted.keys}
+    tried = {key for b in begun for key in b.keys}
     failed = {r.keys[0]: b for r, b in results if isinstance(b, str) and r.keys[0] not in tried}
-    finished = _each(Begun.finished, begun, better)
-    return Fitted(alone, _from_those_that_contain(finished, better, alone.fitted), better, failed)
+    finished = _each(FittedStructure.finished, begun, better)
+    return Fitted(declared, _from_those_that_contain(finished, better, declared), better, failed)
 
 
 def _begun(
     platform: Platform, rebuilt: Rebuilt | None, logs: Logs, known: Mapping[str, float]
-) -> Begun:
+) -> FittedStructure:
     model = model_of(platform)
     problem = problem_for(
         platform,
@@ -133,33 +122,35 @@ def _begun(
     return begin_structure(rebuilt.keys, rebuilt.provides, problem, rebuilt.starts, known)
 
 
-def _better_half(begun: Sequence[Begun], declared: FittedStructure) -> tuple[int, ...]:
+def _better_half(begun: Sequence[FittedStructure], declared: FittedStructure) -> tuple[int, ...]:
     """Which structures fit better than half of them, at least as many as are followed."""
-    cost = [deviance(b.fitted, declared) for b in begun]
+    cost = [deviance(b, declared) for b in begun]
     best_first = sorted(range(len(begun)), key=cost.__getitem__)
     return tuple(best_first[: max(FOLLOWED, (len(begun) + 1) // 2)])
 
 
 def _from_those_that_contain(
-    begun: tuple[Begun, ...], better: Sequence[int], declared: FittedStructure
-) -> tuple[Begun, ...]:
+    every: tuple[FittedStructure, ...], better: Sequence[int], declared: FittedStructure
+) -> tuple[FittedStructure, ...]:
     """Structures fitted again from where one that contains them fits clearly better: without a gap
     that is not there a shaft has to fit as well as with it.
     """
 
-    def again(one: Begun) -> Begun:
-        larger = [b.fitted for b in begun if one.fitted.provides < b.fitted.provides]
+    def again(one: FittedStructure) -> FittedStructure:
+        larger = [s for s in every if one.provides < s.provides]
         best = min(larger, key=lambda s: deviance(s, declared), default=None)
-        if best is None or not is_better(best, one.fitted):
-            return one
-        return one.from_values(best.trial.values)
+        return (
+            one if best is None or not is_better(best, one) else one.from_values(best.trial.values)
+        )
 
-    return _each(again, begun, better)
+    return _each(again, every, better)
 
 
 def _each(
-    step: Callable[[Begun], Begun], begun: Sequence[Begun], which: Sequence[int]
-) -> tuple[Begun, ...]:
+    step: Callable[[FittedStructure], FittedStructure],
+    every: Sequence[FittedStructure],
+    which: Sequence[int],
+) -> tuple[FittedStructure, ...]:
     """The structures, those in `which` a step further."""
-    further = dict(zip(which, side_by_side(step, [begun[k] for k in which]), strict=True))
-    return tuple(further.get(k, b) for k, b in enumerate(begun))
+    further = dict(zip(which, side_by_side(step, [every[k] for k in which]), strict=True))
+    return tuple(further.get(k, s) for k, s in enumerate(every))

@@ -121,7 +121,7 @@ def fits(declared: tuple[Platform, list[Path]]) -> dict[tuple[str, ...], FittedS
         ):
             model = model_of(there)
             problem = problem_for(there, model, logs, logs, (), executor, lambda text: None)
-            found[keys] = begin_structure(keys, provides, problem, starts, {}).finished().fitted
+            found[keys] = begin_structure(keys, provides, problem, starts, {}).finished()
         yield found
 
 
@@ -202,10 +202,10 @@ def test_a_structure_goes_on_from_the_values_of_one_that_contains_it_and_keeps_w
         begun = begin_structure(shaft.keys, shaft.provides, problem, (stiff,), {})
         led = begun.from_values(true)
         kept = led.from_values(stiff)
-        assert led.fitted.is_noise_alone
-    values = led.fitted.trial.values
+        assert led.is_noise_alone
+    values = led.trial.values
     assert values["k_shaft_pan"] / values["J_pan"] == pytest.approx(STIFFNESS / J_LOAD, rel=0.01)
-    assert kept.fitted.trial.fit.cost <= led.fitted.trial.fit.cost * (1.0 + 1e-9)
+    assert kept.trial.fit.cost <= led.trial.fit.cost * (1.0 + 1e-9)
 
 
 @pytest.mark.long

@@ -35,8 +35,10 @@ from ptp_symbolic.numeric.diagnose.refits import (
     over_whole_runs,
     polished,
     refitted_in,
+    sharpened,
 )
-from ptp_symbolic.numeric.diagnose.stepwise import is_earned
+from ptp_symbolic.numeric.diagnose.stepwise import Search, Tried, is_earned
+from ptp_symbolic.numeric.identify.evidence import Allowance
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.windows import parted_like
@@ -49,13 +51,16 @@ _ON_OTHER_RUNS: WeakKeyDictionary[FittedModel, dict[tuple[Any, ...], FittedModel
 @dataclass(frozen=True, eq=False)
 class FittedStructure:
     """A structure fitted to the training runs, no term added; `added` are its effects with the
-    parameters that they brought (none for the declared structure), `provides` its mechanisms.
+    parameters that they brought (none for the declared structure), `provides` its mechanisms, and
+    `proposals` what leads further. At first it is fitted to whole runs (windows, where they are) by
+    a few iterations from the best of its starts.
     """
 
     added: tuple[Candidate, ...]
     provides: frozenset[str]
     problem: SearchProblem
     trial: FittedModel
+    proposals: ProposedSets
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -70,46 +75,43 @@ class FittedStructure:
         propagated = propagated_input_noise(self.problem, self.trial.fit)
         return leaves_noise_alone(self.trial, noise_floor_of(self.problem, self.trial, propagated))
 
-
-@dataclass(frozen=True, eq=False)
-class Begun:
-    """A structure fitted to whole runs (windows, where they are) by a few iterations from the best
-    of its starts, with what leads further.
-    """
-
-    fitted: FittedStructure
-    proposals: ProposedSets
-
-    def finished(self) -> "Begun":
+    def finished(self) -> "FittedStructure":
         """The structure fitted to the end of whole runs; windows are for `over_windows_too`."""
-        problem = self.fitted.problem
+        problem = self.problem
         return self._with(*over_whole_runs(problem, self.proposals)) if problem.windows else self
 
-    def over_windows_too(self) -> "Begun":
+    def over_windows_too(self) -> "FittedStructure":
         """The structure led over windows, where whole runs leave more than noise."""
-        if self.fitted.is_noise_alone:
+        if self.is_noise_alone:
             return self
-        return self._with(*fitted_over_windows(self.fitted.problem, self.proposals))
+        return self._with(*fitted_over_windows(self.problem, self.proposals))
 
-    def from_values(self, values: Mapping[str, float]) -> "Begun":
+    def from_values(self, values: Mapping[str, float]) -> "FittedStructure":
         """The structure fitted to the end from `values` of another one that contains it, where that
         leads to a better fit.
         """
-        problem = self.fitted.problem
+        problem = self.problem
         own = {f.name for f in problem.free}
-        start = {**self.fitted.trial.values, **{n: v for n, v in values.items() if n in own}}
+        start = {**self.trial.values, **{n: v for n, v in values.items() if n in own}}
         begun = fitted(problem, (), start, None, executor=problem.executor)
         best = (halving(problem, [begun], 1) or [begun])[0]
         return self._with(
             problem, polished(problem, best, propagated_input_noise(problem, best.fit))
         )
 
-    def _with(self, problem: SearchProblem, trial: FittedModel) -> "Begun":
+    def without_terms(self) -> Search:
+        """A search for terms in the structure that ends with none."""
+        propagated = propagated_input_noise(self.problem, self.trial.fit)
+        trial = sharpened(self.problem, self.trial, propagated)
+        problem = replace(self.problem, allowance=Allowance())
+        return Search(problem, trial, trial, (), Tried(), self.proposals, propagated, False)
+
+    def _with(self, problem: SearchProblem, trial: FittedModel) -> "FittedStructure":
         """The structure with a trial, or with its own where that fits better in the same runs."""
-        if _alike(trial, self.fitted.trial):
-            trial = ranked([trial, self.fitted.trial])[0]
+        if _alike(trial, self.trial):
+            trial = ranked([trial, self.trial])[0]
         proposals = replace(self.proposals, start=trial.values)
-        return Begun(replace(self.fitted, problem=problem, trial=trial), proposals)
+        return replace(self, problem=problem, trial=trial, proposals=proposals)
 
 
 def _alike(one: FittedModel, other: FittedModel) -> bool:
@@ -122,7 +124,7 @@ def begin_structure(
     problem: SearchProblem,
     starts: Sequence[Mapping[str, float]],
     known: Mapping[str, float],
-) -> Begun:
+) -> FittedStructure:
     """The structure of `problem`, begun from `starts` (of the parameters that the effects named in
     `keys` bring), each beside the declared start and beside `known` values of a fit of the declared
     structure.
@@ -139,7 +141,7 @@ def begin_structure(
     begun = [fitted(problem, (), v, None, executor=problem.executor) for v in distinct.values()]
     trial = (halving(problem, begun, 2, 1) or begun[:1])[0]
     proposals = replace(proposals, start=trial.values)
-    return Begun(FittedStructure(effects_of(problem, keys), provides, problem, trial), proposals)
+    return FittedStructure(effects_of(problem, keys), provides, problem, trial, proposals)
 
 
 def effects_of(problem: SearchProblem, keys: Sequence[str]) -> tuple[Candidate, ...]:
