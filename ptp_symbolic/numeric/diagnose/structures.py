@@ -38,6 +38,7 @@ from ptp_symbolic.numeric.diagnose.refits import (
     sharpened,
 )
 from ptp_symbolic.numeric.diagnose.stepwise import Search, Tried, is_earned
+from ptp_symbolic.numeric.identify.constants import SCREENED
 from ptp_symbolic.numeric.identify.evidence import Allowance
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.numeric.identify.run import Run
@@ -138,8 +139,11 @@ def begin_structure(
         for start in ({}, *starts)
     ]
     distinct = {tuple(sorted(values.items())): values for values in every}
-    begun = [fitted(problem, (), v, None, executor=problem.executor) for v in distinct.values()]
-    trial = (halving(problem, begun, 2, 1) or begun[:1])[0]
+    few, run = replace(problem, train=problem.few), problem.executor
+    first = [fitted(few, (), v, None, executor=run) for v in distinct.values()]
+    ends = halving(few, first, SCREENED) or first[:1]
+    begun = [fitted(problem, (), end.values, None, executor=run) for end in ends]
+    trial = (halving(problem, begun, 1) or begun[:1])[0]
     proposals = replace(proposals, start=trial.values)
     return FittedStructure(effects_of(problem, keys), provides, problem, trial, proposals)
 

@@ -16,7 +16,14 @@ from numba import njit, types
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.along_motion import NEXT_TO_NONE
-from ptp_symbolic.numeric.identify.constants import FORGOTTEN, NEARBY, ROUNDING, ROUNDS, SAME
+from ptp_symbolic.numeric.identify.constants import (
+    CHATTER,
+    FORGOTTEN,
+    NEARBY,
+    ROUNDING,
+    ROUNDS,
+    SAME,
+)
 from ptp_symbolic.numeric.identify.evidence import Deferred, refuse_unstored
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.runtime.element_layout import contact_guards
@@ -28,6 +35,7 @@ from ptp_symbolic.numeric.simulation.inputs import (
     values_at,
 )
 from ptp_symbolic.numeric.simulation.integration import (
+    MOST_STEPS,
     Accuracy,
     geared_weights,
     integrate,
@@ -397,10 +405,12 @@ def evaluate(
 ) -> Evaluation:
     """Simulate `run` at p [np] from start unknowns z [nz]; with `tangents` also the Jacobians by
     the parameters `columns` [nc] and by z. A simulation that fails has zero residuals and says so
-    in `failed`; raises InputError as `integrate` does.
+    in `failed`, one that takes more than CHATTER steps a sample too: bodies that bounce without
+    loss strike each other millions of times. Raises InputError as `integrate` does.
     """
     refuse_unstored()
     run.work.add(len(run.time), tangents)
+    may_chatter = bool(model.mode_names) and not model.sampler_periods
     columns = columns if tangents else columns[:0]
     x, s = start_state(model, run, p, z, columns)
     late = delays_of(model, p)
@@ -414,7 +424,12 @@ def evaluate(
         table.held,
         table.with_stops(run.time) if is_late else run.stops,
         run.time,
-        Accuracy(tolerance.relative, tolerance.absolute(model), 1.0),
+        Accuracy(
+            tolerance.relative,
+            tolerance.absolute(model),
+            1.0,
+            CHATTER * len(run.time) if may_chatter else MOST_STEPS,
+        ),
         s if tangents else None,
         columns,
         delay_columns(model, columns),
