@@ -44,6 +44,7 @@ from ptp_symbolic.numeric.simulation.kernels.calls import call, output_addresses
 from ptp_symbolic.numeric.simulation.kernels.records import (
     CUBE,
     DONE,
+    EXHAUSTED,
     INTEGER_TABLE,
     INTEGERS,
     MATRIX,
@@ -436,7 +437,10 @@ def evaluate(
         rough_tangents=True,
     )
     r, j = np.zeros(run.size), np.zeros((run.size, found.s.shape[2]))
-    failed = None if found.status == DONE else f"{run.name}: stopped at {found.reached:.4f} s"
+    failed = None
+    if found.status != DONE:
+        after = f" after {found.steps} steps" if found.status == EXHAUSTED else ""
+        failed = f"{run.name}: stopped at {found.reached:.4f} s{after}"
     if failed is None:
         _compare(
             output_addresses(model.module),
