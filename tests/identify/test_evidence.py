@@ -8,6 +8,7 @@ import pytest
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.evidence import (
+    Deferred,
     Entry,
     Evidence,
     InTurn,
@@ -124,3 +125,17 @@ def test_all_that_is_missing_side_by_side_is_told() -> None:
     with recording(evidence), pytest.raises(NotStoredError) as told:
         list(InTurn().map(missing, [1, 2, 3, 2]))
     assert len(told.value.missing) == 2
+
+
+def test_what_is_made_where_it_is_needed_does_not_wait_for_those_who_wait_for_it() -> None:
+    """All threads of a pool need the same items, which are made by that pool."""
+    with Threads(2) as pool:
+        items = Deferred("squares", 4, lambda: list(pool.map(lambda k: k * k, range(4))))
+
+        def ask(k: int) -> int:
+            return items[k]
+
+        with Threads(3) as others:
+            jobs = [others.submit(lambda: list(pool.map(ask, range(4)))) for _ in range(3)]
+            jobs.append(pool.submit(lambda: list(others.map(ask, range(4)))))
+            assert [job.result(timeout=20.0) for job in jobs] == 4 * [[0, 1, 4, 9]]

@@ -424,31 +424,32 @@ def _soon_found(stepwise: StepwiseSearch) -> list[FittedModel]:
 
 
 def _from_declared(stepwise: StepwiseSearch, found: list[FittedModel]) -> Search:
-    """Complete what is `found` of the proposed sets, prune, grow, simplify; where the declared
-    model fits better from the end of the chosen set (or from a far start), from the beginning, or
-    with new gains if the residual is white; where an added effect multiplies small errors, from the
-    beginning in windows.
+    """Complete what is `found` of the proposed sets, prune, grow, simplify; from the beginning in
+    windows where an added effect multiplies small errors, and again where the declared model fits
+    materially better from the end of the chosen set (or from a far start).
     """
-    begun, steps = _begun(stepwise, found)
-    best, cut = begun, _in_windows(stepwise, begun)
-    if cut is None:
-        best, steps = extended(stepwise, begun, steps)
-        cut = _in_windows(stepwise, best)
-    if cut is not None:
-        return _from_declared(cut, _proposed(cut))
-    best, steps = _over_other_roads(stepwise, begun, best, steps)
-    better = _better_from_far_off(stepwise, best)
-    declared, before = _declared_after(stepwise, better), stepwise.declared
-    if declared is not before:
+    while True:
+        begun, steps = _begun(stepwise, found)
+        best, cut = begun, _in_windows(stepwise, begun)
+        if cut is None:
+            best, steps = extended(stepwise, begun, steps)
+            cut = _in_windows(stepwise, best)
+        if cut is not None:
+            stepwise, found = cut, _proposed(cut)
+            continue
+        best, steps = _over_other_roads(stepwise, begun, best, steps)
+        better = _better_from_far_off(stepwise, best)
+        declared, before = _declared_after(stepwise, better), stepwise.declared
         stepwise.declared = declared
-        is_better = gain(declared, before).share >= stepwise.problem.material
-        if is_better and not stepwise.problem.is_over and not stepwise.is_white(better):
-            stepwise.tried.others.clear()
-            return _from_declared(stepwise, _proposed(stepwise))
+        is_end = declared is before or stepwise.problem.is_over or stepwise.is_white(better)
+        if is_end or gain(declared, before).share < stepwise.problem.material:
+            break
+        stepwise.tried.others.clear()
+        found = _proposed(stepwise)
     if better is not best or declared is not before:
         best, steps = stepwise.pruned(better)
-    ended = _ended(stepwise, best, steps)
-    return replace(ended, is_taken_over=declared is not before and bool(better.candidates))
+    is_taken_over = declared is not before and bool(better.candidates)
+    return replace(_ended(stepwise, best, steps), is_taken_over=is_taken_over)
 
 
 def _begun(stepwise: StepwiseSearch, found: list[FittedModel]) -> tuple[FittedModel, list[Step]]:

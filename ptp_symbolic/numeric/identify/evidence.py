@@ -78,12 +78,22 @@ def uncounted() -> Iterator[None]:
         _TALLIES.reset(token)
 
 
+# The threads that wait for the piece of work under way.
+_BUSY: ContextVar[tuple["Threads", ...]] = ContextVar("busy", default=())
+
+
 class Threads(ThreadPoolExecutor):
-    """Threads in which each piece of work has the context of its caller."""
+    """Threads in which each piece of work has the context of its caller. One that hands out work to
+    the threads that it runs in does it itself: all of them may wait as it does.
+    """
 
     def submit(self, fn: Callable[..., Result], /, *args: Any, **kwargs: Any) -> "Future[Result]":
         """Begin a piece of work."""
-        return super().submit(copy_context().run, fn, *args, **kwargs)
+        if self in _BUSY.get():
+            return InTurn().submit(fn, *args, **kwargs)
+        context = copy_context()
+        context.run(_BUSY.set, (*_BUSY.get(), self))
+        return super().submit(context.run, fn, *args, **kwargs)
 
 
 @dataclass(frozen=True, eq=False)
@@ -321,23 +331,21 @@ class Deferred(Sequence[Item], Generic[Item]):
         self.squares = squares
         self._size, self._make = size, make
         self._items = tuple(items) if make is None else None
-        self._lock = threading.Lock()
 
     @property
     def items(self) -> tuple[Item, ...]:
-        """The items, made now if they have not been."""
-        with self._lock:
-            if self._make is not None and self._items is None:
-                with uncounted():
-                    self._items = tuple(self._make())
-            return self._items or ()
+        """The items, made now if they have not been; no other thread waits for that, for it may be
+        the one that makes them.
+        """
+        if self._items is None and self._make is not None:
+            with uncounted():
+                self._items = tuple(self._make())
+        return self._items or ()
 
     def as_single(self, convert: Callable[[Sequence[Item]], Sequence[Item]]) -> "Deferred[Item]":
         """The items in single precision, made now if these have been."""
         key = key_of("single", self)
-        with self._lock:
-            have = self._make is None or self._items is not None
-        if have:
+        if self._make is None or self._items is not None:
             single = Deferred(key, self._size, None, self.squares, convert(self.items))
         else:
             make, squares = self.items_made, self.squares
