@@ -121,6 +121,7 @@ def _reason() -> Schema:
 def _row() -> Schema:
     entries = {
         "effect": TEXT,
+        "title": said(TEXT, "What a structure is called: the kinds of one effect differ in it."),
         "axis": AXIS,
         "structure": list_of(TEXT, "The structures of the platform that it was added to."),
         "gain": or_none(GAIN),
@@ -130,7 +131,7 @@ def _row() -> Schema:
         "accepted": TRUTH,
         "why": said(TEXT, "Why it was accepted or not."),
     }
-    return record(entries, optional=("gain_along_motion",))
+    return record(entries, optional=("title", "gain_along_motion"))
 
 
 def _part() -> Schema:

@@ -6,7 +6,7 @@ price (`python -m tests.benchmark price`).
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from typing import Any
 
@@ -19,7 +19,7 @@ from ptp_symbolic.numeric.identify.fit import Fit
 DIAGNOSE = "ptp_symbolic.numeric.diagnose"
 WORKFLOWS = "ptp_symbolic.workflows"
 
-CERTAIN = Gain(1.0, 1.0, 1.0, np.inf, 1, 0.0)  # all of the error, beyond doubt
+ALL_OF_IT = Gain(1.0, 1.0, 1.0, np.inf, 1, 0.0)  # all of the error, beyond doubt
 
 
 @dataclass(frozen=True)
@@ -35,6 +35,11 @@ class Rule:
     where: tuple[str, ...]
     off: Any
     price: str = ""
+
+    def at(self, value: float) -> "Rule":
+        """The rule with another value of what it compares with, in place of being off."""
+        owner, name = self.targets()[0]
+        return replace(self, off=_always(value) if callable(vars(owner)[name]) else value)
 
     def targets(self) -> list[tuple[Any, str]]:
         """The modules or classes that hold it, with the name in each. Raises AttributeError for a
@@ -122,7 +127,7 @@ RULES = (
         "in innovations",
         "Where more than noise remains, a member reduces more than slow drift.",
         _in("confirm", "gain_in_innovations"),
-        _always(CERTAIN),
+        _always(ALL_OF_IT),
         "safety: slow drift is credited to any effect",
     ),
     Rule(
@@ -403,7 +408,7 @@ RULES = (
 
 def table() -> str:
     """The rules as a table of the documentation."""
-    rows = ["| Rule | It asks | Price | Where |", "|---|---|---|---|"]
+    rows = ["| Rule | It asks | Price | Switched off in |", "|---|---|---|---|"]
     for rule in RULES:
         places = [p.removeprefix("ptp_symbolic.").replace(":", ".") for p in rule.where]
         rows.append(

@@ -75,8 +75,8 @@ class Outcome:
 
 @dataclass(frozen=True, eq=False)
 class Searched:
-    """A structure with the search for terms in it, brief or whole; what it ends with is decided
-    when it is asked for.
+    """A structure with the search for terms in it, brief or whole; the verdict on it is reached
+    when `decided` is asked for.
     """
 
     platform: Platform
@@ -93,8 +93,8 @@ class Searched:
         )
 
     @cached_property
-    def outcome(self) -> Outcome:
-        """What it ends with."""
+    def decided(self) -> Outcome:
+        """What it ends with, by the rules of `decide`."""
         verdict = decide(self.found)
         return Outcome(self.platform, self.structure, self.problem, self.found, verdict)
 
@@ -141,7 +141,7 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
         why = f"not tried: {why if is_enough else 'the time was over'}"
         untried = {**untried, **{key: why for each in every for key in each.keys}}
         is_cut_short = is_stopped or terms.found.is_cut_short
-        return Choice(terms.outcome, terms.outcome, (), untried, is_cut_short)
+        return Choice(terms.decided, terms.decided, (), untried, is_cut_short)
     known = terms.found.chosen.values if terms.is_noise_alone else None
     fitted = fit_structures(platform, every, logs, known)
     if not terms.is_noise_alone and not fitted.quiet and not logs.allowance.is_over:
@@ -156,12 +156,13 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     is_late = not terms.is_noise_alone and logs.allowance.is_over
     if not terms.is_noise_alone and not is_late:
         outcomes, terms = _at_length(outcomes, terms, searched)
-    chosen, refused = _chosen(terms.outcome, [s.outcome for s in outcomes], fitted.every, logs)
+    chosen, refused = _chosen(terms.decided, [s.decided for s in outcomes], fitted.every, logs)
     order = fitted.order
     rest = [s for s in fitted.every if s not in order]
-    rows = tuple(_row(s, fitted.declared, chosen, refused) for s in [*order, *rest])
+    alike = alternatives(chosen.structure, fitted.every) if chosen.structure else ()
+    rows = tuple(_row(s, fitted.declared, chosen, refused, alike) for s in [*order, *rest])
     is_cut_short = is_late or any(s.found.is_cut_short for s in [terms, *outcomes])
-    return Choice(chosen, terms.outcome, rows, {**untried, **fitted.failed}, is_cut_short)
+    return Choice(chosen, terms.decided, rows, {**untried, **fitted.failed}, is_cut_short)
 
 
 def _platforms(every: Sequence[Rebuilt]) -> dict[tuple[tuple[str, ...], frozenset[str]], Platform]:
@@ -170,9 +171,9 @@ def _platforms(every: Sequence[Rebuilt]) -> dict[tuple[tuple[str, ...], frozense
 
 
 def _over_windows(platform: Platform, fitted: Fitted, terms: Searched, logs: Logs) -> Fitted:
-    """The structures led over windows: beside the effects that were found where these surely halve
-    the squared error of the declared structure, because others show beside them only. A delay is
-    not among them: it makes up for the lag that a structure would explain.
+    """The structures fitted over windows. Where the effects that were found in the declared one
+    surely halve its squared error, they are part of every structure: some structures show beside
+    them only. A delay is not among them, for it makes up for the lag of a structure.
     """
     trial = terms.found.chosen
     declared = on_runs_of(terms.found.problem, terms.found.declared, trial.fit.runs)
@@ -219,9 +220,9 @@ def _paired(
 def _from_what_contains_it(
     one: Searched, outcomes: Sequence[Searched], searched: Callable[..., Searched]
 ) -> Searched:
-    """A search that leaves more than noise, or another from the values of one that leaves noise
-    alone with more structure, if it does so too: a gap beside a shaft leads to the place where the
-    shaft alone is enough.
+    """A search in a structure that leaves more than noise, made again from the values of a larger
+    structure that leaves noise alone, and kept if it does so too: shaft and gap lead to the place
+    where the shaft alone is enough.
     """
     richer = [s for s in outcomes if s.is_noise_alone and _contains(s, one)]
     if one.is_noise_alone or not richer:
@@ -235,9 +236,9 @@ def _at_length(
     terms: Searched,
     searched: Callable[..., Searched],
 ) -> tuple[list[Searched], Searched]:
-    """Structures and the declared one, with the whole search in what is best so far, or the
-    simplest that it contains and is not far ahead of: a gap beside a shaft may make up for a term
-    that is missing. And in the declared one unless that is far behind.
+    """The searches, in whole where they were brief: in the structure that fits best, or in its
+    simplest part that is not far behind (a gap beside a shaft may make up for a missing term), and
+    in the declared one unless that is far behind.
     """
     best = _best_fit([terms, *outcomes])
     if best is not terms and not best.is_noise_alone:
@@ -476,22 +477,28 @@ def _row(
     declared: FittedStructure,
     chosen: Outcome,
     refused: Mapping[FittedStructure, str],
+    alike: Sequence[FittedStructure],
 ) -> dict[str, Any]:
-    """A row of the ranking for a structure without terms."""
+    """A row of the ranking for a structure without terms; `alike` are the alternatives of the
+    chosen one.
+    """
     failed = structure.trial.fit.failed
     accepted = structure is chosen.structure
     if accepted:
         why = "the structure of the final model: it predicts blocks left out significantly better"
     elif failed:
         why = f"the fit failed: {failed}"
+    elif structure in alike and structure not in refused:
+        why = "predicts as well as the chosen structure, both without terms"
     else:
         why = refused.get(structure) or _why_not_followed(structure, declared)
     earned = None if failed else gain_over(structure, declared)
     row = ranking_row(structure.added, structure.trial, earned, accepted, why)
-    return {**row, "structure": list(structure.keys)}
+    title = " and ".join(c.title for c in structure.added)
+    return {**row, "title": title, "structure": list(structure.keys)}
 
 
 def _why_not_followed(structure: FittedStructure, declared: FittedStructure) -> str:
     if gain_over(structure, declared).is_better(structure.problem.material):
-        return "predicts worse than the best structure"
-    return "predicts no better than the declared structure"
+        return "predicts better than the declared structure; others fitted better and were followed"
+    return "does not predict significantly better than the declared structure"

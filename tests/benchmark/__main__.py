@@ -6,7 +6,7 @@
     python -m tests.benchmark table --out DIR [--half ...] [--only REGEX]
     python -m tests.benchmark draw  --out DIR [--half ...] [--only REGEX] FILE.png
     python -m tests.benchmark constants --out DIR --half build --only REGEX [--jobs N]
-    python -m tests.benchmark price [--simulate] [--rule REGEX] FOLDER...
+    python -m tests.benchmark price [--simulate] [--rule REGEX] [--as VALUE] FOLDER...
 
 `run` makes what is missing and leaves out what has an outcome; with --scale, a chosen constant, or
 all of a section of their table, "effort" for one, are taken times the factor. With --redraw, the
@@ -14,8 +14,8 @@ sets of the build half are drawn anew, surroundings and all, once for every N: w
 half may be right by chance. `table` also writes table.md and table.json into DIR. `constants` runs
 a few sets with every chosen constant halved and doubled in turn, and prints a row for each. `price`
 decides again upon the evidence in folders, of sets or of `ptp-symbolic diagnose`, without one rule
-after the other, and prints the verdicts that change; with --simulate, what is missing for that is
-simulated, and added to the evidence.
+after the other, or with another value of a rule that is a number, and prints the verdicts that
+change; with --simulate, what is missing for that is simulated, and added to the evidence.
 """
 
 import argparse
@@ -93,8 +93,8 @@ def price(arguments: argparse.Namespace) -> None:
     """Print what each rule is worth."""
     from tests.benchmark.price import prices
 
-    rule, simulate = arguments.rule, arguments.simulate
-    for line in prices([Path(folder) for folder in arguments.files], rule, simulate):
+    folders = [Path(folder) for folder in arguments.files]
+    for line in prices(folders, arguments.rule, arguments.simulate, arguments.value):
         print(line, flush=True)
 
 
@@ -128,6 +128,9 @@ def main() -> None:
     parser.add_argument("--redraw", type=int, metavar="N", help="the build half in other draws")
     parser.add_argument("--rule", default="", metavar="REGEX", help="part of the name of rules")
     parser.add_argument("--simulate", action="store_true", help="what is not stored for a price")
+    parser.add_argument(
+        "--as", dest="value", type=float, help="value of the rules, not switched off"
+    )
     parser.add_argument("--cores", default="0", help=argparse.SUPPRESS)
     arguments = parser.parse_intermixed_args()
     if arguments.command == "draw" and len(arguments.files) != 1:

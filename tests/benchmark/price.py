@@ -170,13 +170,17 @@ class Change:
         return "none" if str(self.before) == str(self.after) else "other"
 
 
-def prices(folders: Sequence[Path], pattern: str, simulate: bool) -> Iterator[str]:
+def prices(
+    folders: Sequence[Path], pattern: str, simulate: bool, value: float | None = None
+) -> Iterator[str]:
     """A line for the verdict of every folder and for each that changes without a rule whose name
-    has the pattern, then one for every such rule with how many do.
+    has the pattern (or with another `value` of it), then one for every such rule with how many do.
 
     One folder after the other: what is made of its logs takes most of the time, and the memory.
     """
     rules = [rule for rule in RULES if re.search(pattern, rule.name)]
+    without = "without" if value is None else f"at {value:g} by"
+    rules = rules if value is None else [rule.at(value) for rule in rules]
     found: dict[str, list[Change]] = {rule.name: [] for rule in rules}
     for folder in folders:
         case = Case.read(folder)
@@ -186,7 +190,7 @@ def prices(folders: Sequence[Path], pattern: str, simulate: bool) -> Iterator[st
             change = Change(folder, usual, case.answer(rule, simulate=simulate))
             found[rule.name].append(change)
             if change.kind != "none":
-                yield f"    without {rule.name}: {change.after}"
+                yield f"    {without} {rule.name}: {change.after}"
     for rule in rules:
         yield f"{rule.name}: {_counted(found[rule.name])}"
 

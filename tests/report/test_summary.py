@@ -240,7 +240,26 @@ def test_the_ranking_has_every_fitted_set_by_its_error_and_the_others_after_it()
     share = rows[0]["gain"]["share"]
     assert share > rows[1]["gain"]["share"] > 0.9 and rows[2]["gain"] is None
     rows = summary.ranking(search, _verdict(UNEXPLAINED, _trial(left=3.0)), ())
-    assert [row["why"] for row in rows] == ["predicts worse than the best"] * 2
+    assert [row["why"] for row in rows] == [
+        "not chosen: the search went on from a set that fitted better"
+    ] * 2
+
+
+def test_the_terms_of_a_named_structure_are_accepted_with_it() -> None:
+    """The final model has the structure among its effects; the search compared the terms alone."""
+    term, structure = _candidate("constant_torque", "pan"), _candidate("shaft_compliance", "pan")
+    terms = _trial(term, left=0.5)
+    search: Any = SimpleNamespace(
+        declared=_trial(left=3.0),
+        chosen=terms,
+        tried=Tried([]),
+        proposals=SimpleNamespace(regression=None),
+    )
+    found = _verdict(EXPLAINED, _trial(structure, term, left=0.5))
+    found.compared = terms
+    (row,) = summary.ranking(search, found, (term,))
+    assert row["accepted"]
+    assert row["why"] == "every effect in it is significant, and no other effect improves it"
 
 
 def test_errors_pool_the_angles_and_tell_every_signal_in_its_own_unit() -> None:

@@ -318,19 +318,28 @@ def left_by_best_values(
     return np.array([np.mean((table * level) ** 2, axis=0) for table in tables])
 
 
+def usual_residual(left: FloatArray, size: FloatArray) -> FloatArray:
+    """Root mean square residual [ny] of usual runs of `size` [runs] samples, by the mean squares
+    `left` [runs, ny] of each: the median run, for one that sticks at another sample than it did is
+    off by counts; of many windows all but the worst, a MATERIAL share of the samples.
+    """
+    is_many = len(left) >= MANY_RUNS
+    square = trimmed_mean(left, size, MATERIAL) if is_many else weighted_median(left, size)
+    return np.asarray(np.sqrt(square))
+
+
 def is_noise_alone(left: FloatArray, size: FloatArray, floor: NoiseFloor, trained: Fit) -> bool:
     """Whether validation runs of `size` [runs] samples show no more than noise, by their mean
-    square residuals `left` [runs, ny] (see `left_by_best_values`). The median of the runs counts,
-    for one that sticks at another sample than it did is off by counts, but none may be further off
-    than what is near the noise floor. Of many windows all count but the worst, a MATERIAL share of
-    the samples, and their residuals may not be larger than those of the training windows. Windows
-    below the usual noise count as equal in that: those at rest, rounded to a count that they stay
-    at, have smaller residuals, and show no lack in those that move.
+    square residuals `left` [runs, ny] (see `left_by_best_values`): by the usual one, and no run may
+    be further off than what is near the noise floor. Of many windows the residuals may not be
+    larger than those of the training windows. Windows below the usual noise count as equal in that:
+    those at rest, rounded to a count that they stay at, have smaller residuals, and show no lack in
+    those that move.
     """
-    squares = left / (ABOVE_NOISE * floor.most) ** 2
-    many = len(left) >= MANY_RUNS
-    usual = trimmed_mean(squares, size, MATERIAL) if many else weighted_median(squares, size)
-    if not (np.all(usual <= 1.0) and (many or np.all(squares <= NEARBY**2))):
+    largest, many = ABOVE_NOISE * floor.most, len(left) >= MANY_RUNS
+    if not np.all(usual_residual(left, size) <= largest):
+        return False
+    if not (many or np.all(left <= (NEARBY * largest) ** 2)):
         return False
     own = mean_squares(trained.evaluations, trained.runs)
     if not many or len(own) < MANY_RUNS:

@@ -189,8 +189,7 @@ def gain_over(one: FittedStructure, other: FittedStructure) -> Gain:
 
 def by_fit(declared: FittedStructure, found: Sequence[FittedStructure]) -> list[FittedStructure]:
     """The structures that predict a material share better than the declared one, the best fit
-    first; before it those with fewer parameters that predict materially as well, or that it
-    contains and does not surely better.
+    first; but one with fewer parameters comes before another that it predicts as well as.
     """
     whole = [s for s in found if not s.trial.fit.failed]
     gains = side_by_side(lambda s: gain_over(s, declared), whole)
@@ -208,8 +207,9 @@ def by_fit(declared: FittedStructure, found: Sequence[FittedStructure]) -> list[
 
 
 def _is_as_good(simpler: FittedStructure, best: FittedStructure) -> bool:
-    """Whether a simpler structure may stand for the best fit: a wide interval alone, as where much
-    is unexplained, makes a lag no equal of a shaft.
+    """Whether a simpler structure predicts as well as the best fit: one that this contains, where
+    it is not significantly worse; any other, where it is not materially worse, for a wide interval
+    alone, as where much is unexplained, makes a lag no equal of a shaft.
     """
     if simpler.provides < best.provides:
         return not is_better(best, simpler)
@@ -234,8 +234,8 @@ def deviance(structure: FittedStructure, declared: FittedStructure) -> float:
 def alternatives(
     chosen: FittedStructure, found: Sequence[FittedStructure]
 ) -> list[FittedStructure]:
-    """Structures that the chosen one does not predict clearly better than; one that contains it
-    adds nothing that these logs show.
+    """The other structures that are not significantly worse than the chosen one, each without
+    terms; not those that have all of its mechanisms, for what they have more shows in nothing.
     """
     others = [
         s

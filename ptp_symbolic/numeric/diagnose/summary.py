@@ -224,13 +224,13 @@ _PART = re.compile(r"(\w+_)(sin|cos)(\d?)(_\w+)")  # a part of a wave of `harmon
 def sizes_of(after: FittedModel, intervals: Mapping[str, Estimate]) -> dict[str, str]:
     """How large every named effect of the trial `after` is, by its key: of the parameters that
     switch it on the most significant one, of a wave the amplitude, with its number of cycles where
-    that was found, of what nothing switches off its first one; angles in degrees.
+    that was found, of what nothing switches off the first that is identified; angles in degrees.
     """
     units, found = after.fit.model.units, {}
     for c in after.candidates:
         if c.is_declared_value or not c.free:
             continue
-        shown = c.defining or c.free[:1]
+        shown = c.defining or sorted(c.free, key=lambda f: not intervals[f.name].identified)[:1]
         free = max(
             shown, key=lambda f: _significance(intervals[f.name], c.vanishing.get(f.name, 0.0))
         )
@@ -489,7 +489,7 @@ def ranking(
 
 
 def _row(search: Search, found: Verdict, trial: FittedModel) -> dict[str, Any]:
-    accepted = bool(found.final.candidates) and trial.keys == found.final.keys
+    accepted = bool(found.final.candidates) and trial.keys == found.compared.keys
     elsewhere = accepted and found.is_along_motion  # that fit is not the best one of outputs
     earned = None if elsewhere else gain(trial, search.declared)
     return ranking_row(trial.candidates, trial, earned, accepted, _why(found, trial))
@@ -544,7 +544,7 @@ def _unfitted(search: Search, forms: Sequence[Candidate]) -> dict[str, Any]:
 
 
 def _why(found: Verdict, trial: FittedModel) -> str:
-    if found.final.candidates and trial.keys == found.final.keys:
+    if found.final.candidates and trial.keys == found.compared.keys:
         if found.is_along_motion:
             return "every effect in it is significant in the torque along the measured motion"
         return "every effect in it is significant, and no other effect improves it"
@@ -555,6 +555,6 @@ def _why(found: Verdict, trial: FittedModel) -> str:
     refused = [f"{key} {why}" for key, why in found.refused.items() if key in trial.keys]
     if refused:
         return "; ".join(refused)
-    if found.final.candidates and set(found.final.keys) < set(trial.keys):
+    if found.final.candidates and set(found.compared.keys) < set(trial.keys):
         return "what it adds to the accepted set reduces the error too little"
-    return "predicts worse than the best"
+    return "not chosen: the search went on from a set that fitted better"

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.along_rows import extended_along_motion
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
@@ -33,6 +34,7 @@ from ptp_symbolic.numeric.diagnose.gain import (
     is_validated,
     left_by_best_values,
     p_value,
+    usual_residual,
 )
 from ptp_symbolic.numeric.diagnose.groups import (
     Alternative,
@@ -70,6 +72,8 @@ from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.run import sizes
 from ptp_symbolic.numeric.identify.windows import estimable
 
+FloatArray = NDArray[np.float64]
+
 NOTHING_MISSING = "nothing_missing"
 EXPLAINED = "explained"
 UP_TO_GROUP = "explained_up_to_group"
@@ -87,7 +91,9 @@ class Verdict:
     with others. By key, `gains` is what each of its effects gains, and `confusable` are the
     alternatives of each; `alternatives` are sets with them. `closest` is the best set where nothing
     is confirmed, `refused` says why candidates that gained were not named. `floor` is that of
-    `final`; `before` and `after` are the validation runs by the declared and by the final model.
+    `final`; `before` and `after` are the validation runs by the declared and by the final model,
+    `usual` [ny] is the residual of the latter that decides, over the largest noise (see
+    `usual_residual`).
     """
 
     word: str
@@ -103,6 +109,7 @@ class Verdict:
     floor: NoiseFloor
     before: Fit
     after: Fit
+    usual: FloatArray
     held_out: Gain | None
 
     @property
@@ -120,7 +127,8 @@ def decide(found: Search) -> Verdict:
     """Confirm the chosen set, find its alternatives, and judge the validation runs.
 
     Where the residual of training runs may be autocorrelated noise, and that of validation runs
-    exceeds it, there is no such noise: residuals are compared with white noise then.
+    exceeds it, it was no noise: everything is decided again with residuals compared with white
+    noise.
     """
     found = with_declared_over_windows(found)
     verdict = _decided(found)
@@ -241,8 +249,8 @@ def _along_motion(
 
 def _near_floor(stepwise: StepwiseSearch, sets: Sequence[_Set]) -> FittedModel | None:
     """A set found along the motion, fitted to the outputs from there, where their residual comes
-    near the noise floor: nothing hides it in them then, they determine its values better, and judge
-    it as any other. None where they do not.
+    near the noise floor: the outputs then determine its values better than the torque does, and it
+    is judged by them as any other set. None where it does not.
     """
     begun = [fitted(stepwise.problem, s.final.candidates, s.final.values, None) for s in sets]
     near = [t for t in halving(stepwise.problem, begun, 1) if is_near_noise_floor(t)]
@@ -260,7 +268,7 @@ def _judged(
         after = held_out_fit(problem, final) if final.candidates else before
         held_out = held_out_gain(after, before) if final.candidates else None
         estimated = one.estimated or estimable(final.fit, problem.input_noise, problem.executor)
-        floor, quiet = _floor_and_quiet(problem, final, after, estimated)
+        floor, quiet, usual = _floor_and_quiet(problem, final, after, estimated)
         at_noise = leaves_noise_alone(final, floor)
         unusual = at_noise and exceeds_usual_noise(final, floor)
         if held_out is None or is_validated(held_out, quiet, unusual, problem.material):
@@ -284,20 +292,24 @@ def _judged(
         floor,
         before,
         after,
+        usual,
         held_out,
     )
 
 
 def _floor_and_quiet(
     problem: SearchProblem, final: FittedModel, after: Fit, estimated: Fit
-) -> tuple[NoiseFloor, bool]:
+) -> tuple[NoiseFloor, bool, FloatArray]:
     """The floor of the final model, and whether its validation runs `after` show noise alone, with
-    some values in the joint confidence region of the `estimated` ones.
+    some values in the joint confidence region of the `estimated` ones; and their usual residual
+    [ny] with these, over the largest noise.
     """
     floor = noise_floor_of(problem, final, propagated_input_noise(problem, final.fit))
     here = replace(floor, propagated=propagated_input_noise(problem, after))
     left = left_by_best_values(after, estimated, here.level, problem.executor)
-    return floor, is_noise_alone(left, sizes(after.runs), here, final.fit)
+    size = sizes(after.runs)
+    usual = usual_residual(left, size) / here.most
+    return floor, is_noise_alone(left, size, here, final.fit), usual
 
 
 def _closest(found: Search) -> FittedModel | None:
@@ -317,16 +329,21 @@ def word_of(trial: FittedModel, named: Mapping[str, tuple[str, ...]], quiet: boo
 
 
 SHARE = "share by which the sum of squares on blocks left out falls"
-CERTAIN = "lower end of the 95 % interval of that share"
+LOWER_END = "lower end of the 95 % interval of that share"
 CHANCE = "chance of finding it where it is not"
 VALIDATED = "share by which the sum of squares of the validation runs falls"
-TRAINING = "residual of {signal} on the training runs, over the largest that may be noise"
-VALIDATION = "residual of {signal} on the validation runs, over the largest that may be noise"
+TRAINING = "residual of {signal} on the training runs, over the largest noise; a tenth more may be"
+VALIDATION = (
+    "residual of {signal} on the usual validation run, with values in their joint confidence"
+    " region, over the largest noise; a tenth more may be"
+)
 ALIKE = "alternatives that predict as well in its place"
+BESIDE = ", with what was found beside it"
+COMPARED_ALONE = ", each without what was found beside it"
 
 
 def reasons(found: Search, verdict: Verdict, compared: int) -> list[dict[str, Any]]:
-    """A row for every rule that has a number, and what it is `about` (the key of an effect, named
+    """A row for every test with a number, and what it is `about` (the key of an effect, named
     or of the chosen set; None: the whole model): the `value`, whether it has to be `at_least` or
     `at_most` the `limit`, and whether it `holds`. `compared` is the number of structures that were
     fitted.
@@ -342,9 +359,10 @@ def reasons(found: Search, verdict: Verdict, compared: int) -> list[dict[str, An
     if verdict.held_out is not None:
         least = MOST if verdict.leaves_more else found.problem.material
         rows.append(_row(None, VALIDATED, verdict.held_out.share, "at_least", least))
-    most = verdict.floor.most
-    for text, fit in ((TRAINING, verdict.final.fit), (VALIDATION, verdict.after)):
-        for signal, ratio in zip(fit.runs[0].signals, normalised_residual(fit) / most, strict=True):
+    trained = normalised_residual(verdict.final.fit) / verdict.floor.most
+    signals = verdict.after.runs[0].signals
+    for text, ratios in ((TRAINING, trained), (VALIDATION, verdict.usual)):
+        for signal, ratio in zip(signals, ratios, strict=True):
             rows.append(_row(None, text.format(signal=signal), ratio, "at_most", ABOVE_NOISE))
     return rows
 
@@ -353,7 +371,9 @@ def _of_effect(
     found: Search, verdict: Verdict, candidate: Candidate, tests: int
 ) -> list[dict[str, Any]]:
     key, gain = candidate.key, verdict.gains[candidate.key]
-    alike = _row(key, ALIKE, len(verdict.confusable[key]), "at_most", 0)
+    has_terms = not candidate.vanishing and any(c.vanishing for c in verdict.final.candidates)
+    alone = COMPARED_ALONE if has_terms else ""
+    alike = _row(key, f"{ALIKE}{alone}", len(verdict.confusable[key]), "at_most", 0)
     if verdict.is_along_motion:  # there it is decided by the regression of the torque
         return [
             _row(key, SHARE, gain.share, "at_least", found.problem.material),
@@ -361,7 +381,8 @@ def _of_effect(
             alike,
         ]
     by_values = p_value(verdict.compared, candidate.vanishing) if candidate.vanishing else 1.0
-    return [*_of_gain(found, verdict, key, gain, by_values, tests), alike]
+    share, *others = _of_gain(found, verdict, key, gain, by_values, tests)
+    return [share | {"rule": f"{SHARE}{BESIDE if has_terms else ''}"}, *others, alike]
 
 
 def _of_gain(
@@ -370,7 +391,7 @@ def _of_gain(
     least = MOST if verdict.leaves_more else 0.0
     return [
         _row(key, SHARE, gain.share, "at_least", found.problem.material),
-        _row(key, CERTAIN, gain.lower, "at_least", least),
+        _row(key, LOWER_END, gain.lower, "at_least", least),
         _row(key, CHANCE, gain.smallest_chance(by_values), "at_most", FALSE_ALARM / tests),
     ]
 
