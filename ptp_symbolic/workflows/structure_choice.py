@@ -491,14 +491,19 @@ def _row(
     elif structure in alike and structure not in refused:
         why = "predicts as well as the chosen structure, both without terms"
     else:
-        why = refused.get(structure) or _why_not_followed(structure, declared)
+        why = refused.get(structure) or _why_not_followed(structure, declared, chosen.structure)
     earned = None if failed else gain_over(structure, declared)
     row = ranking_row(structure.added, structure.trial, earned, accepted, why)
     title = " and ".join(c.title for c in structure.added)
     return {**row, "title": title, "structure": list(structure.keys)}
 
 
-def _why_not_followed(structure: FittedStructure, declared: FittedStructure) -> str:
+def _why_not_followed(
+    structure: FittedStructure, declared: FittedStructure, chosen: FittedStructure | None
+) -> str:
+    has_chosen = chosen is not None and chosen.provides <= structure.provides
+    if chosen is not None and has_chosen and not is_better(structure, chosen):
+        return "has all mechanisms of the chosen structure, and does not predict better"
     if gain_over(structure, declared).is_better(structure.problem.material):
         return "predicts better than the declared structure; others fitted better and were followed"
     return "does not predict significantly better than the declared structure"
