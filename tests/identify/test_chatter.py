@@ -27,9 +27,9 @@ PLATFORM = Platform("pressed", "Gear on a face", ("pan",), 9.81, EFFECTS, (), SI
 ROTOR, TORQUE, GAP, PERIOD = 0.02, 0.05, 1e-6, 1.0  # kg m^2, N m, rad, s
 
 
-def evaluation(restitution: float) -> Evaluation:
+def evaluation(restitution: float) -> tuple[Evaluation, int]:
     """A motor of unit ratio that a constant voltage presses against its load, sampled once a
-    second.
+    second; and the work that counts for it.
     """
     model = emission.emit(PLATFORM)
     time = np.arange(6) * PERIOD
@@ -38,17 +38,20 @@ def evaluation(restitution: float) -> Evaluation:
     given = {"J_pan": 0.05, "J_motor_pan": ROTOR, "N_pan": 1.0, "L_pan": 1e-3, "R_pan": 10.0}
     given |= {"K_t_pan": TORQUE / 50.0, "gap_pan": GAP, "e_gap_pan": restitution}
     p, none = model.parameter_vector(given), np.zeros(0, dtype=np.int64)
-    return evaluate(model, run, p, run.guess, none, False, Tolerance())
+    return evaluate(model, run, p, run.guess, none, False, Tolerance()), run.work.samples
 
 
 def test_bounces_that_never_end_end_a_simulation_of_a_fit() -> None:
     bounces = PERIOD / (2.0 * math.sqrt(2.0 * GAP / 2.0 / (TORQUE / ROTOR)))
     assert bounces > CHATTER, "a sample holds more than what counts as chatter"
-    found = evaluation(1.0)
+    found, work = evaluation(1.0)
     assert found.failed is not None
     assert f"after {CHATTER * 6} steps" in found.failed
+    assert work == CHATTER * 6, "what takes many steps a sample uses up the allowance sooner"
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.5, 0.9])
 def test_bounces_that_die_down_are_simulated_to_the_end(restitution: float) -> None:
-    assert evaluation(restitution).failed is None
+    found, work = evaluation(restitution)
+    assert found.failed is None
+    assert work >= 6

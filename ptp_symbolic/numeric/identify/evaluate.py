@@ -410,7 +410,6 @@ def evaluate(
     loss strike each other millions of times. Raises InputError as `integrate` does.
     """
     refuse_unstored()
-    run.work.add(len(run.time), tangents)
     may_chatter = bool(model.mode_names) and not model.sampler_periods
     columns = columns if tangents else columns[:0]
     x, s = start_state(model, run, p, z, columns)
@@ -436,6 +435,7 @@ def evaluate(
         delay_columns(model, columns),
         rough_tangents=True,
     )
+    run.work.add(max(len(run.time), found.steps), tangents)
     r, j = np.zeros(run.size), np.zeros((run.size, found.s.shape[2]))
     failed = None
     if found.status != DONE:

@@ -32,7 +32,9 @@ Result = TypeVar("Result")
 
 @dataclass(eq=False)
 class Work:
-    """Samples simulated so far, all threads together; one with sensitivities counts as three."""
+    """Samples simulated so far, all threads together, or the steps that they took where these were
+    more; one with sensitivities counts as three.
+    """
 
     samples: int = 0
     _lock: threading.Lock = field(default_factory=threading.Lock, repr=False)
@@ -43,7 +45,7 @@ class Work:
         return ()
 
     def add(self, samples: int, tangents: bool = False) -> None:
-        """Count a run that was simulated, also in every `tallied` part that it belongs to."""
+        """Count the samples or steps of a run, also in every `tallied` part that it belongs to."""
         tallies = _TALLIES.get()
         if tallies is None:
             return
