@@ -241,13 +241,14 @@ RULES = (
     ),
     Rule(
         "validated",
-        "The validation runs gain a material share (50 % where they show more than noise).",
+        "The validation runs gain a material share (50 % where they show more than noise),"
+        " significantly where they are 12 blocks or more.",
         (
             *_in("verdict", "is_validated"),
             *_in("structure_choice", "is_validated", package=WORKFLOWS),
         ),
         _always(True),
-        "safety: names hold on runs that were never fitted",
+        "safety: names hold on runs that were never fitted; set 409 (a wrong name)",
     ),
     Rule(
         "unusual noise validated",

@@ -269,15 +269,17 @@ def is_validated(held_out: Gain, quiet: bool, unusual: bool, material: float) ->
     by a `material` share. Where their residual exceeds the noise (not `quiet`), a wrong effect may
     imitate a missing one, so that it has to fall by half, as on training runs.
 
-    Where all may be noise, but the residual of training runs is `unusual`, the noise is large by
-    chance, or an effect is missing. Any effect follows a part of either, for seconds, in blocks
-    left out as well; the validation runs have noise of their own, and must gain significantly, by
-    how much or by how many blocks: one window that gains far more than others hides by how much.
+    Where all may be noise, any effect follows a part of it, for seconds, in blocks left out as
+    well; the validation runs have noise of their own. They must gain significantly, by how much or
+    by how many blocks (one window that gains far more than others hides by how much), where they
+    are enough blocks to show that, and where the residual of training runs is `unusual`: then the
+    noise is large by chance, or an effect is missing.
     """
     if not quiet:
         return held_out.share >= MOST
+    must_be_clear = unusual or held_out.degrees + 1 >= FEWEST_BLOCKS
     is_clear = held_out.smallest_chance(1.0) < FALSE_ALARM
-    return held_out.share >= material and (not unusual or is_clear)
+    return held_out.share >= material and (is_clear or not must_be_clear)
 
 
 @recorded()
