@@ -501,9 +501,8 @@ def _row(
 def _why_not_followed(
     structure: FittedStructure, declared: FittedStructure, chosen: FittedStructure | None
 ) -> str:
-    has_chosen = chosen is not None and chosen.provides <= structure.provides
-    if chosen is not None and has_chosen and not is_better(structure, chosen):
-        return "has all mechanisms of the chosen structure, and does not predict better"
+    if chosen is not None and chosen.provides <= structure.provides:
+        return "has all mechanisms of the chosen structure, which fits better, or as well with fewer parameters"
     if gain_over(structure, declared).is_better(structure.problem.material):
         return "predicts better than the declared structure; others fitted better and were followed"
     return "does not predict significantly better than the declared structure"
