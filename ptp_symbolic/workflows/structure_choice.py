@@ -502,7 +502,10 @@ def _why_not_followed(
     structure: FittedStructure, declared: FittedStructure, chosen: FittedStructure | None
 ) -> str:
     if chosen is not None and chosen.provides <= structure.provides:
-        return "has all mechanisms of the chosen structure, which fits better, or as well with fewer parameters"
+        return (
+            "has all mechanisms of the chosen structure, which fits better, or as well with fewer"
+            " parameters"
+        )
     if gain_over(structure, declared).is_better(structure.problem.material):
         return "predicts better than the declared structure; others fitted better and were followed"
     return "does not predict significantly better than the declared structure"
