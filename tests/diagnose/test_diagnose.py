@@ -95,7 +95,7 @@ def test_why_a_verdict_came_out_is_said_in_numbers(sample) -> None:
     assert all(row["holds"] for row in found["why"])
     errors = found["error"]["validate"]
     for signal, after in errors["after"]["by_signal"].items():
-        (row,) = [r for r in found["why"] if f"{signal} on the validation runs" in r["rule"]]
+        (row,) = [r for r in found["why"] if f"{signal} on the usual validation run" in r["rule"]]
         assert row["at_most"] == pytest.approx(1.1)
         floor = errors["noise_floor"]["by_signal"][signal]
         assert row["value"] == pytest.approx(after["rmse"] / floor["rmse"], rel=0.1)

@@ -46,9 +46,9 @@ SCREENED = 2  # sets, candidates; of those begun with few iterations that go on;
 SCANNED = 100  # frequencies; that can be resolved, at most, of a wave simulated at all; scaled
 REFINEMENTS = 2  # 1; Gauss-Newton steps of a proposed set; scaled
 REPLAYS = 100  # runs; replayed with noisy inputs: a standard deviation is good to 7 %; derived
-CHATTER = 200  # steps; a sample, on average, of what no log can show; drives take 1 to 10; scaled
 ROUGH = 1e-2  # 1; error of simulations over the noise, while searching; scaled
 LITTLE = 2.0 * ROUGH  # 1; change of a mean square that such errors can make; derived
+CHATTER = 2.0 / ROUGH  # steps; a sample, on average: what is shorter is less than that; derived
 
 # Windows and rows
 SHORT = 1.0  # s; window beside the time constants of drives (0.05 s); scaled

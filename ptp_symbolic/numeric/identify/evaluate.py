@@ -428,7 +428,7 @@ def evaluate(
             tolerance.relative,
             tolerance.absolute(model),
             1.0,
-            CHATTER * len(run.time) if may_chatter else MOST_STEPS,
+            int(CHATTER * len(run.time)) if may_chatter else MOST_STEPS,
         ),
         s if tangents else None,
         columns,
