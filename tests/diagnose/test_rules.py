@@ -1,16 +1,18 @@
 """The rules of a diagnosis, switched off one by one."""
 
 from pathlib import Path
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose import verdict
+from ptp_symbolic.numeric.diagnose import gain, verdict
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.confirm import why_unconfirmed
 from ptp_symbolic.numeric.diagnose.gain import Gain
 from ptp_symbolic.numeric.diagnose.stepwise import is_earned
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
+from ptp_symbolic.workflows import preparation
 from ptp_symbolic.workflows.rules import RULES, Rule, switched_off, table
 from tests.identify.straight import finished
 
@@ -60,3 +62,12 @@ def test_chance_alone_earns_a_place_without_significance() -> None:
     with switched_off(BY_NAME["significant"]):
         assert is_earned(weak, 0.16, 1, 0.1)
     assert not is_earned(weak, 0.16, 1, 0.1)
+
+
+def test_a_rule_decides_with_another_value() -> None:
+    """A function of it in place of a function, a number in place of a number; both come back."""
+    usual, alike = preparation.material_of, gain.UNALIKE
+    material, windows = (BY_NAME[name].at(0.05) for name in ("material", "windows alike"))
+    with switched_off(material), switched_off(windows):
+        assert preparation.material_of(cast(Any, None)) == gain.UNALIKE == 0.05
+    assert preparation.material_of is usual and alike == gain.UNALIKE

@@ -270,10 +270,10 @@ def is_validated(held_out: Gain, quiet: bool, unusual: bool, material: float) ->
     imitate a missing one, so that it has to fall by half, as on training runs.
 
     Where all may be noise, any effect follows a part of it, for seconds, in blocks left out as
-    well; the validation runs have noise of their own. They must gain significantly, by how much or
-    by how many blocks (one window that gains far more than others hides by how much), where they
-    are enough blocks to show that, and where the residual of training runs is `unusual`: then the
-    noise is large by chance, or an effect is missing.
+    well; the validation runs have noise of their own. With FEWEST_BLOCKS or more they have to gain
+    significantly, and always where the residual of training runs is `unusual`: then the noise is
+    large by chance, or an effect is missing. How many blocks gain is enough for that, for one that
+    gains far more than the others hides by how much they do.
     """
     if not quiet:
         return held_out.share >= MOST

@@ -48,7 +48,7 @@ REFINEMENTS = 2  # 1; Gauss-Newton steps of a proposed set; scaled
 REPLAYS = 100  # runs; replayed with noisy inputs: a standard deviation is good to 7 %; derived
 ROUGH = 1e-2  # 1; error of simulations over the noise, while searching; scaled
 LITTLE = 2.0 * ROUGH  # 1; change of a mean square that such errors can make; derived
-CHATTER = 2.0 / ROUGH  # steps; a sample, on average: what is shorter is less than that; derived
+CHATTER = 2.0 / ROUGH  # steps; a sample, on average: what is shorter adds less; derived
 
 # Windows and rows
 SHORT = 1.0  # s; window beside the time constants of drives (0.05 s); scaled

@@ -80,13 +80,13 @@ def uncounted() -> Iterator[None]:
         _TALLIES.reset(token)
 
 
-# The threads that wait for the piece of work under way.
+# The pools in whose threads the piece of work under way runs, or is waited for.
 _BUSY: ContextVar[tuple["Threads", ...]] = ContextVar("busy", default=())
 
 
 class Threads(ThreadPoolExecutor):
-    """Threads in which each piece of work has the context of its caller. One that hands out work to
-    the threads that it runs in does it itself: all of them may wait as it does.
+    """Threads in which each piece of work has the context of its caller. What a piece of work hands
+    to its own pool is done at once, in its thread: all others may be waiting too.
     """
 
     def submit(self, fn: Callable[..., Result], /, *args: Any, **kwargs: Any) -> "Future[Result]":
@@ -336,8 +336,8 @@ class Deferred(Sequence[Item], Generic[Item]):
 
     @property
     def items(self) -> tuple[Item, ...]:
-        """The items, made now if they have not been; no other thread waits for that, for it may be
-        the one that makes them.
+        """The items, made now if they have not been. There is no lock: a thread that waited here
+        might be one of those that make them.
         """
         if self._items is None and self._make is not None:
             with uncounted():
