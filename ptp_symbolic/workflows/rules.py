@@ -290,7 +290,7 @@ RULES = (
         "Where more than noise remains, a set is extended by gains in the torque along the motion.",
         _in("verdict", "extended_along_motion"),
         _always(None),
-        "EMPS (friction beside friction, a delay)",
+        "EMPS (friction beside friction, a delay); the servo pendulum (no name)",
     ),
     Rule(
         "declared model over windows",

@@ -105,7 +105,7 @@ def extended_along_motion(
     if len(candidates) == len(trial.candidates):
         return None
     fit = motion.fitted(candidates)
-    if not motion.predicts_better(fit, motion.fitted(trial.candidates)):
+    if not motion.predicts_better(candidates, trial.candidates):
         return None
     final = FittedModel(
         candidates, replace(simulated_freely(problem, runs, fit.values), free=fit.free)
@@ -203,10 +203,10 @@ class _Motion:
         problem, space = self.problem, self.space
         begun = start_of(problem, self.rows, candidates, self.start)
         free = all_free(problem, candidates, begun)
-        values = fit_equations(space, free, begun, POLISH, problem.executor)
+        values = fit_equations(space, free, begun, POLISH, problem.executor, own_torque=True)
         values = possible(problem, free, {**begun, **values})
         here = {f.name: values[f.name] for f in free}
-        at = linearised(space, free, values, here, problem.executor)
+        at = linearised(space, free, values, here, problem.executor, own_torque=True)
         root = np.sqrt(at.weight)
         residual = at.rows * root
         table = at.jacobian * root[:, None] * slopes(free, to_search(free, values))
@@ -220,24 +220,31 @@ class _Motion:
         cost = float(residual @ residual)
         return Fit(problem.model, tuple(runs), free, values, (), cost, tuple(evaluations))
 
-    def predicts_better(self, larger: Fit, smaller: Fit) -> bool:
-        """Whether the residual torque along the validation runs is materially smaller with the
-        values of one fit than with those of another, in windows as short as those of the training
-        runs.
+    def predicts_better(self, larger: Sequence[Candidate], smaller: Sequence[Candidate]) -> bool:
+        """Whether the residual along the validation runs is materially smaller with the values of
+        one set than with those of another, in windows as short as those of the training runs. It is
+        that of the inputs: torques of a drive whose constant is fitted too small are small as well.
         """
         space = equation_space(
             self.problem, self.start, self.problem.validate, half_width=self.space.half_width
         )
         if space is None:
             return False
-        vector = self.problem.model.parameter_vector
-        rows = [space.rows(vector(dict(fit.values))) for fit in (larger, smaller)]
         equation, run, time = space.labels()
+        rows = [self._residual_inputs(space, c) for c in (larger, smaller)]
         scale = robust_scale(rows[0], equation)
         block = block_numbers(run, time)
         squares = [np.minimum((r / scale) ** 2, FAR**2) for r in rows]
         losses = [np.asarray(np.bincount(block, s), np.float64) for s in squares]
         return compared(losses[0], losses[1]).share >= self.problem.material
+
+    def _residual_inputs(self, space: EquationSpace, candidates: Sequence[Candidate]) -> FloatArray:
+        """What the inputs lack in the rows [n] of `space` with the values of a set, in the units of
+        these.
+        """
+        p = self.problem.model.parameter_vector(dict(self.fitted(candidates).values))
+        equation, _, _ = space.labels()
+        return space.rows(p) / space.drive_gains(p)[equation]
 
 
 def _of_rows(run: Run, time: FloatArray, residual: FloatArray) -> Run:

@@ -67,9 +67,13 @@ def fit_equations(
     values: Mapping[str, float],
     iterations: int,
     executor: Executor | None = None,
+    own_torque: bool = False,
 ) -> dict[str, float]:
     """The values of `free`, and of those tied to them, that fit the rows of `space`: reweighted
-    Gauss-Newton steps within bounds, begun at `values` (all parameters of the model).
+    Gauss-Newton steps within bounds, begun at `values` (all parameters of the model). With
+    `own_torque` the model's own torque is the instrument (Janot, Vandanjon and Gautier, 2014):
+    friction that is a share of the measured one carries the residual that it should explain, and
+    comes out too small.
 
     A prior of one start value (or one scale) around the start of every parameter keeps those in
     place that the rows do not see; thousands of rows, which overlap, outweigh it where they do. A
@@ -85,7 +89,7 @@ def fit_equations(
     lower, upper = np.array([f.lower for f in free]), np.array([f.upper for f in free])
     before = here
     for iteration in range(iterations):
-        found = linearised(space, free, values, here, executor)
+        found = linearised(space, free, values, here, executor, own_torque)
         if not (np.all(np.isfinite(found.rows)) and np.all(np.isfinite(found.jacobian))):
             here = before
             break

@@ -25,7 +25,7 @@ from ptp_symbolic.numeric.identify.along_motion import (
     layout_of,
     torques_along,
 )
-from ptp_symbolic.numeric.identify.constants import CYCLES, MOST, SAME, SEED
+from ptp_symbolic.numeric.identify.constants import CYCLES, LITTLE, MOST, SAME, SEED
 from ptp_symbolic.numeric.identify.equation_rows import (
     FurtherStates,
     MeasuredMotion,
@@ -293,7 +293,6 @@ class EquationSpace:
         of the model to be its own: as a regressor the measured one carries the residual that it
         should explain (Janot, Vandanjon and Gautier, 2014).
         """
-        acting = self._acting(p)
         found = []
         for number in range(len(self.runs)):
             part = np.full(len(self.rows_of[number].grid), 2)
@@ -301,29 +300,42 @@ class EquationSpace:
             acceleration = along.coarse.acceleration
             every = np.column_stack([acceleration, acceleration[:, self.gears]])
             torque = lacking + np.einsum("kar,kr->ka", inertia, every)
-            added = np.zeros((len(torque), acting.shape[1]))
-            for axis, row in enumerate(acting):
-                strongest = int(np.argmax(np.abs(row)))
-                if row[strongest] != 0.0:
-                    added[:, strongest] -= torque[:, axis] / row[strongest]
+            acting = self._acting(number, p, lacking)
+            added = np.zeros((len(torque), acting.shape[2]))
+            for axis, strongest in enumerate(np.argmax(np.mean(np.abs(acting), axis=0), axis=1)):
+                slope = acting[:, axis, strongest]
+                seen = np.abs(slope) > LITTLE * np.max(np.abs(slope), initial=0.0)
+                added[seen, strongest] -= torque[seen, axis] / slope[seen]
             found.append(added)
         return found
 
-    def _acting(self, p: FloatArray) -> FloatArray:
-        """Derivative [na, nu + e] of the torque that every axis lacks by inputs and measured
-        further states, seen in the middle of the first run after they were shifted for good.
+    def drive_gains(self, p: FloatArray) -> FloatArray:
+        """By how much the torque of every equation [equations] changes with its strongest input, in
+        N m by the unit of that, on average over the first run at p [np]; 1 where none acts.
+        """
+        gains = np.ones(self.equations)
+        part = np.ones(len(self.rows_of[0].grid), dtype=np.int64)
+        acting = self._acting(0, p, self._torques(0, p, None, part)[2][0])
+        strongest = np.max(np.mean(np.abs(acting), axis=0), axis=1, initial=0.0)
+        gains[: len(strongest)] = np.where(strongest > 0.0, strongest, 1.0)
+        return gains
+
+    def _acting(self, number: int, p: FloatArray, lacking: FloatArray) -> FloatArray:
+        """Derivative [g, na, nu + e] of the torque that every axis is `lacking` [g, na] in a run by
+        inputs and measured further states, which are shifted for good. It differs from sample to
+        sample where friction is a share of the torque.
         """
         inputs, further = len(self.model.input_names), len(self.layout.further)
         shown = {inputs + place for _, place in self.measured}
-        none = np.zeros((len(self.rows_of[0].grid), inputs + further))
-        middle, part = len(none) // 2, np.ones(len(none), dtype=np.int64)
-        here = self._torques(0, p, none, part)[2][0][middle]
-        result = np.zeros((len(here), inputs + further))
+        none = np.zeros((len(self.rows_of[number].grid), inputs + further))
+        part = np.ones(len(none), dtype=np.int64)
+        result = np.zeros((*lacking.shape, inputs + further))
         for j in range(inputs + further):
             if j < inputs or j in shown:
                 shifted = none.copy()
                 shifted[:, j] = SAME
-                result[:, j] = (self._torques(0, p, shifted, part)[2][0][middle] - here) / SAME
+                there = self._torques(number, p, shifted, part)[2][0]
+                result[:, :, j] = (there - lacking) / SAME
         return result
 
 

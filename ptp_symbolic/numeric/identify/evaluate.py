@@ -116,9 +116,12 @@ def _of_each_other(fx, fast):
 @njit(cache=True, nogil=True, error_model="numpy")
 def _settle_state(fx, dx, fast, slopes, encoders, x):
     """Put `fast` states where their rates dx are zero, and angles where sensors go on showing the
-    same.
+    same. Nothing moves where there are no finite rates: the simulation fails by itself.
     """
-    moved = -np.linalg.solve(_of_each_other(fx, fast), dx[fast])
+    own = _of_each_other(fx, fast)
+    if not (np.isfinite(own).all() and np.isfinite(dx[fast]).all()):
+        return
+    moved = -np.linalg.solve(own, dx[fast])
     x[fast] += moved
     for row, joint, gear in encoders:
         shift = 0.0
@@ -132,7 +135,7 @@ def _settle_state(fx, dx, fast, slopes, encoders, x):
 @njit(cache=True, nogil=True, error_model="numpy")
 def _settle_tangents(fx, fp, fast, columns, slopes, encoders, s):
     """Put the tangents s of `fast` states where their rates stay zero, and those of angles where
-    sensors go on showing the same.
+    sensors go on showing the same; see `_settle_state`.
     """
     n, ns = s.shape
     earlier, change = s[fast], np.zeros((len(fast), ns))
@@ -143,7 +146,10 @@ def _settle_tangents(fx, fp, fast, columns, slopes, encoders, s):
             for a in range(n):
                 total += fx[fast[i], a] * s[a, c]
             change[i, c] = total
-    now = -np.linalg.solve(_of_each_other(fx, fast), change)
+    own = _of_each_other(fx, fast)
+    if not (np.isfinite(own).all() and np.isfinite(change).all()):
+        return
+    now = -np.linalg.solve(own, change)
     s[fast] = now
     for row, joint, gear in encoders:
         for c in range(ns):
