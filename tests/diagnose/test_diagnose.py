@@ -92,6 +92,7 @@ def test_why_a_verdict_came_out_is_said_in_numbers(sample) -> None:
     assert rows["base_tilt", "lower"]["value"] == added["gain"]["ci95"][0]
     assert rows["base_tilt", "chance"]["at_most"] < 0.05 / 20
     assert rows[None, "share"]["value"] == found["held_out"]["share"]
+    assert rows[None, "chance"]["value"] < 1e-5 and rows[None, "chance"]["at_most"] == 0.05
     assert all(row["holds"] for row in found["why"])
     errors = found["error"]["validate"]
     for signal, after in errors["after"]["by_signal"].items():

@@ -277,9 +277,15 @@ def is_validated(held_out: Gain, quiet: bool, unusual: bool, material: float) ->
     """
     if not quiet:
         return held_out.share >= MOST
-    must_be_clear = unusual or held_out.degrees + 1 >= FEWEST_BLOCKS
     is_clear = held_out.smallest_chance(1.0) < FALSE_ALARM
-    return held_out.share >= material and (is_clear or not must_be_clear)
+    return held_out.share >= material and (is_clear or not must_gain_clearly(held_out, unusual))
+
+
+def must_gain_clearly(held_out: Gain, unusual: bool) -> bool:
+    """Whether the gain on validation runs that show noise alone has to be significant (see
+    `is_validated`).
+    """
+    return unusual or held_out.degrees + 1 >= FEWEST_BLOCKS
 
 
 @recorded()

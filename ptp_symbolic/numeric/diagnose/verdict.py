@@ -33,6 +33,7 @@ from ptp_symbolic.numeric.diagnose.gain import (
     is_noise_alone,
     is_validated,
     left_by_best_values,
+    must_gain_clearly,
     p_value,
     usual_residual,
 )
@@ -332,6 +333,7 @@ SHARE = "share by which the sum of squares on blocks left out falls"
 LOWER_END = "lower end of the 95 % interval of that share"
 CHANCE = "chance of finding it where it is not"
 VALIDATED = "share by which the sum of squares of the validation runs falls"
+VALIDATED_BY_CHANCE = "chance that the validation runs gain so much from what is not there"
 TRAINING = "residual of {signal} on the training runs, over the largest noise; a tenth more may be"
 VALIDATION = (
     "residual of {signal} on the usual validation run, with values in their joint confidence"
@@ -359,6 +361,10 @@ def reasons(found: Search, verdict: Verdict, compared: int) -> list[dict[str, An
     if verdict.held_out is not None:
         least = MOST if verdict.leaves_more else found.problem.material
         rows.append(_row(None, VALIDATED, verdict.held_out.share, "at_least", least))
+        unusual = exceeds_usual_noise(verdict.final, verdict.floor)
+        if not verdict.leaves_more and must_gain_clearly(verdict.held_out, unusual):
+            chance = verdict.held_out.smallest_chance(1.0)
+            rows.append(_row(None, VALIDATED_BY_CHANCE, chance, "at_most", FALSE_ALARM))
     trained = normalised_residual(verdict.final.fit) / verdict.floor.most
     signals = verdict.after.runs[0].signals
     for text, ratios in ((TRAINING, trained), (VALIDATION, verdict.usual)):
