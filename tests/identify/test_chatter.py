@@ -9,7 +9,7 @@ import pytest
 
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.data import Log
-from ptp_symbolic.numeric.identify.constants import CHATTER
+from ptp_symbolic.numeric.identify.constants import BOUNCES, CHATTER
 from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.platform import EffectDeclaration, Platform, SignalDeclaration
@@ -27,12 +27,14 @@ PLATFORM = Platform("pressed", "Gear on a face", ("pan",), 9.81, EFFECTS, (), SI
 ROTOR, TORQUE, GAP, PERIOD = 0.02, 0.05, 1e-6, 1.0  # kg m^2, N m, rad, s
 
 
-def evaluation(restitution: float) -> tuple[Evaluation, int]:
-    """A motor of unit ratio that a constant voltage presses against its load, sampled once a
-    second; and the work that counts for it.
+def evaluation(
+    restitution: float, samples: int = 6, period: float = PERIOD
+) -> tuple[Evaluation, int]:
+    """A motor of unit ratio that a constant voltage presses against its load; and the work that
+    counts for it.
     """
     model = emission.emit(PLATFORM)
-    time = np.arange(6) * PERIOD
+    time = np.arange(samples) * period
     log = Log("pressed", time, np.full((len(time), 1), 500.0), np.zeros((len(time), 1)))
     (run,) = prepare_runs(model, PLATFORM, [log])
     given = {"J_pan": 0.05, "J_motor_pan": ROTOR, "N_pan": 1.0, "L_pan": 1e-3, "R_pan": 10.0}
@@ -48,6 +50,14 @@ def test_bounces_that_never_end_end_a_simulation_of_a_fit() -> None:
     assert found.failed is not None
     assert f"after {6 * CHATTER:.0f} steps" in found.failed
     assert work == 6 * CHATTER, "what takes many steps a sample uses up the allowance sooner"
+
+
+def test_bounces_between_two_samples_end_it_sooner() -> None:
+    """At the average of a sample, a long run would have to wait ten times as long."""
+    found, work = evaluation(1.0, 10 * int(BOUNCES / CHATTER), 20.0 * PERIOD)
+    assert found.failed is not None
+    assert f"after {BOUNCES:.0f} steps" in found.failed
+    assert work == BOUNCES
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.5, 0.9])

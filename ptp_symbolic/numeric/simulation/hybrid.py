@@ -164,15 +164,16 @@ def leave(method, equations, inputs, t, length, t_new, x, step, watch, tangents,
 def advance(method, equations, inputs, stop, x, limits, atol, step, watch, tangents, record):
     """Integrate x [n] in place up to `stop` in s, through all events; returns a status.
 
-    `limits` [3]: rtol, largest step in s, most steps; `atol` [n] in the units of the states.
+    `limits` [4]: rtol, largest step in s, most steps, most of them to one stop; `atol` [n] in the
+    units of the states.
     """
     clock, counts = record.clock, record.counts
-    known = False
+    known, most = False, min(limits[2], counts[STEPS] + limits[3])
     if is_outside(x, watch):
         return OUTSIDE
     while stop - clock[TIME] > TIME_RESOLUTION:
         t = clock[TIME]
-        if counts[STEPS] >= limits[2]:
+        if counts[STEPS] >= most:
             return EXHAUSTED
         if not known:
             begin(method, equations, inputs, t, x, watch.m, step)
