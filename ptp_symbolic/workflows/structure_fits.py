@@ -16,6 +16,7 @@ from ptp_symbolic.numeric.diagnose.structures import (
     deviance,
     is_better,
     is_identifiable,
+    is_near,
 )
 from ptp_symbolic.numeric.identify.evidence import Allowance
 from ptp_symbolic.platform import Platform
@@ -78,7 +79,7 @@ def fit_structures(
     known: Mapping[str, float] | None = None,
 ) -> Fitted:
     """Fit a platform and `every` structure one step away from it: a few iterations each from their
-    starts, the better half to the end of whole runs.
+    starts, the better half to the end of whole runs (see `_finished`).
 
     They are started beside the parameters `known` from a fit that leaves noise alone, else beside
     those of the platform's: where a delay makes up for a lag, the former are right, the latter not.
@@ -99,8 +100,22 @@ def fit_structures(
     logs.progress(f"fitting the better {len(better)} of them to their end")
     tried = {key for b in begun for key in b.keys}
     failed = {r.keys[0]: b for r, b in results if isinstance(b, str) and r.keys[0] not in tried}
-    finished = _each(FittedStructure.finished, begun, better)
+    finished = _finished(begun, better, declared)
     return Fitted(declared, _from_those_that_contain(finished, better, declared), better, failed)
+
+
+def _finished(
+    begun: Sequence[FittedStructure], better: Sequence[int], declared: FittedStructure
+) -> tuple[FittedStructure, ...]:
+    """The structures, those in `better`, the best first, fitted to their end; where the best leaves
+    noise alone, of the others those that come near it.
+    """
+    every, others = _each(FittedStructure.finished, begun, better[:1]), better[1:]
+    best = every[better[0]] if better else None
+    if best is not None and best.is_noise_alone:
+        every = _each(FittedStructure.further, every, others)
+        others = [k for k in others if is_near(every[k], best, declared)]
+    return _each(FittedStructure.finished, every, others)
 
 
 def _begun(

@@ -76,6 +76,11 @@ class FittedStructure:
         propagated = propagated_input_noise(self.problem, self.trial.fit)
         return leaves_noise_alone(self.trial, noise_floor_of(self.problem, self.trial, propagated))
 
+    def further(self) -> "FittedStructure":
+        """The structure fitted a few iterations further."""
+        left = halving(self.problem, [self.trial], 1)
+        return self._with(self.problem, (left or [self.trial])[0])
+
     def finished(self) -> "FittedStructure":
         """The structure fitted to the end of whole runs; windows are for `over_windows_too`."""
         problem = self.problem
@@ -229,6 +234,12 @@ def deviance(structure: FittedStructure, declared: FittedStructure) -> float:
     """How badly a structure fits, in the windows of the declared one."""
     pattern = declared.trial.fit.runs
     return deviances([declared.trial, on_runs_of(structure.problem, structure.trial, pattern)])[1]
+
+
+def is_near(one: FittedStructure, best: FittedStructure, declared: FittedStructure) -> bool:
+    """Whether the mean square residual of a structure is at most e times that of the best one."""
+    excess = deviance(one, declared) - deviance(best, declared)
+    return excess <= sum(run.size for run in declared.trial.fit.runs)
 
 
 def alternatives(

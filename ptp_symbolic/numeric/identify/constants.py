@@ -49,7 +49,7 @@ REPLAYS = 100  # runs; replayed with noisy inputs: a standard deviation is good 
 ROUGH = 1e-2  # 1; error of simulations over the noise, while searching; scaled
 LITTLE = 2.0 * ROUGH  # 1; change of a mean square that such errors can make; derived
 CHATTER = 2.0 / ROUGH  # steps; a sample, on average: what is shorter adds less; derived
-BOUNCES = 1e4  # steps; to one sample: impacts at 0.1 rad/s that keep 0.999 of it rest; derived
+BOUNCES = 1e4  # steps; at once: impacts at 0.1 rad/s that keep 0.999 of it come to rest; derived
 
 # Windows and rows
 SHORT = 1.0  # s; window beside the time constants of drives (0.05 s); scaled

@@ -413,9 +413,9 @@ def evaluate(
 ) -> Evaluation:
     """Simulate `run` at p [np] from start unknowns z [nz]; with `tangents` also the Jacobians by
     the parameters `columns` [nc] and by z. A simulation that fails has zero residuals and says so
-    in `failed`, one that takes more than CHATTER steps a sample, or BOUNCES to one, too: bodies
-    that bounce without loss strike each other millions of times. Raises InputError as `integrate`
-    does.
+    in `failed`, one that takes more than CHATTER steps a sample, or BOUNCES more at once, too:
+    bodies that bounce without loss strike each other millions of times. Raises InputError as
+    `integrate` does.
     """
     refuse_unstored()
     may_chatter = bool(model.mode_names) and not model.sampler_periods
@@ -438,6 +438,7 @@ def evaluate(
             1.0,
             int(CHATTER * len(run.time)) if may_chatter else MOST_STEPS,
             int(BOUNCES) if may_chatter else MOST_STEPS,
+            int(CHATTER),
         ),
         s if tangents else None,
         columns,

@@ -160,12 +160,20 @@ def leave(method, equations, inputs, t, length, t_new, x, step, watch, tangents,
     record.clock[TIME] = t_new
 
 
+@inlined
+def grant(stops, limits):
+    """Add what `stops` bring to the steps that may be taken at once, limits[3]: limits[4] each, and
+    no more than limits[5] at a time (a leaky bucket: Turner, 1986).
+    """
+    limits[3] = min(limits[5], limits[3] + limits[4] * stops)
+
+
 @merged
 def advance(method, equations, inputs, stop, x, limits, atol, step, watch, tangents, record):
     """Integrate x [n] in place up to `stop` in s, through all events; returns a status.
 
-    `limits` [4]: rtol, largest step in s, most steps, most of them to one stop; `atol` [n] in the
-    units of the states.
+    `limits` [6]: rtol, largest step in s, most steps, and those of `grant`; `atol` [n] in the units
+    of the states.
     """
     clock, counts = record.clock, record.counts
     known, most = False, min(limits[2], counts[STEPS] + limits[3])
@@ -321,6 +329,7 @@ def compiled_runner(sources: int, sampled: bool, lean: bool) -> Callable[..., in
         write_here(equations, inputs, stops[0], x, watch.m, tangents, record)
         index = 0
         while index < len(stops) - 1:
+            before = index
             if samples != 0:
                 index = reach_samples_at(
                     samples,
@@ -346,7 +355,8 @@ def compiled_runner(sources: int, sampled: bool, lean: bool) -> Callable[..., in
                 jump_by_delay(equations, inputs, stops[index - 1], x, u[2], watch, tangents)
             if not enter(equations, inputs, stops[index - 1], x, watch, tangents, record):
                 return CHATTERING
-            end = stops[index]
+            end, taken = stops[index], record.counts[STEPS]
+            grant(index - before, limits)
             if sampled:
                 status = advance_by_samples(
                     method,
@@ -369,6 +379,7 @@ def compiled_runner(sources: int, sampled: bool, lean: bool) -> Callable[..., in
                 )
             if status != DONE:
                 return status
+            limits[3] -= record.counts[STEPS] - taken
             write_here(equations, inputs, stops[index], x, watch.m, tangents, record)
         return DONE
 

@@ -173,7 +173,7 @@ def integrate_smooth(
     """Integrate `model` at p [np] from x [n] over `stops` in s, as `integrate` does: status, time
     reached in s, state there, states [k, n] and ledger [k, 3] at `times`, steps tried.
 
-    `limits` [4]: relative tolerance, largest step in s, most steps; `atol` [n].
+    `limits` [6]: relative tolerance, largest step in s, most steps; `atol` [n].
     """
     n, k, z = len(x), len(times), np.zeros
     width = -(-(n + 2 * ledger) // LANES) * LANES
@@ -239,14 +239,16 @@ class Solution:
 @dataclass(frozen=True, eq=False)
 class Accuracy:
     """Local error tolerances, relative and absolute per state [n] in its unit, the largest step
-    in s, and how many steps may be tried, in all and to one stop.
+    in s, and how many steps may be tried: in all, and at once beyond those that are usual from one
+    stop to the next.
     """
 
     relative: float
     absolute: FloatArray
     largest_step: float
     most_steps: int = MOST_STEPS
-    most_to_a_stop: int = MOST_STEPS
+    most_at_once: int = MOST_STEPS
+    usual: int = 0
 
 
 def default_method(model: Model) -> str:
@@ -397,8 +399,9 @@ def _integrate(
 ) -> Solution:
     """One run, as `integrate` has it."""
     stands_still = held or not any(model.module.INPUT_ACTS)
-    most = accuracy.most_steps, accuracy.most_to_a_stop
-    limits = np.array([accuracy.relative, accuracy.largest_step, *most])
+    at_once, usual = accuracy.most_at_once, accuracy.usual
+    most = accuracy.most_steps, at_once, usual, at_once
+    limits = np.array([accuracy.relative, accuracy.largest_step, *most], dtype=np.float64)
     if method == EXPLICIT and (s is None or not s.shape[1]) and is_smooth(model):
         status, reached, state, states, energies, steps = integrate_smooth(
             model, p, x, inputs, stands_still, stops, times, limits, accuracy.absolute, ledger
