@@ -105,7 +105,7 @@ def extended_along_motion(
     if len(candidates) == len(trial.candidates):
         return None
     fit = motion.fitted(candidates)
-    if not motion.predicts_better(candidates, trial.candidates):
+    if not motion.predicts_better(fit, motion.fitted(trial.candidates)):
         return None
     final = FittedModel(
         candidates, replace(simulated_freely(problem, runs, fit.values), free=fit.free)
@@ -220,9 +220,9 @@ class _Motion:
         cost = float(residual @ residual)
         return Fit(problem.model, tuple(runs), free, values, (), cost, tuple(evaluations))
 
-    def predicts_better(self, larger: Sequence[Candidate], smaller: Sequence[Candidate]) -> bool:
+    def predicts_better(self, larger: Fit, smaller: Fit) -> bool:
         """Whether the residual along the validation runs is materially smaller with the values of
-        one set than with those of another, in windows as short as those of the training runs. It is
+        one fit than with those of another, in windows as short as those of the training runs. It is
         that of the inputs: torques of a drive whose constant is fitted too small are small as well.
         """
         space = equation_space(
@@ -231,18 +231,18 @@ class _Motion:
         if space is None:
             return False
         equation, run, time = space.labels()
-        rows = [self._residual_inputs(space, c) for c in (larger, smaller)]
+        rows = [self._residual_inputs(space, fit) for fit in (larger, smaller)]
         scale = robust_scale(rows[0], equation)
         block = block_numbers(run, time)
         squares = [np.minimum((r / scale) ** 2, FAR**2) for r in rows]
         losses = [np.asarray(np.bincount(block, s), np.float64) for s in squares]
         return compared(losses[0], losses[1]).share >= self.problem.material
 
-    def _residual_inputs(self, space: EquationSpace, candidates: Sequence[Candidate]) -> FloatArray:
-        """What the inputs lack in the rows [n] of `space` with the values of a set, in the units of
+    def _residual_inputs(self, space: EquationSpace, fit: Fit) -> FloatArray:
+        """What the inputs lack in the rows [n] of `space` with the values of a fit, in the units of
         these.
         """
-        p = self.problem.model.parameter_vector(dict(self.fitted(candidates).values))
+        p = self.problem.model.parameter_vector(dict(fit.values))
         equation, _, _ = space.labels()
         return space.rows(p) / space.drive_gains(p)[equation]
 
