@@ -1,0 +1,60 @@
+"""Which structures are fitted to their end: the better half, or of it those that come near one that
+leaves noise alone.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any, cast
+
+import pytest
+
+from ptp_symbolic.numeric.diagnose.structures import FittedStructure
+from ptp_symbolic.workflows import structure_fits
+
+
+@dataclass(frozen=True)
+class Begun:
+    """A structure with how many of each it had: a few iterations, and a fit to its end."""
+
+    error: float
+    further: int = 0
+    ends: int = 0
+
+    @property
+    def is_noise_alone(self) -> bool:
+        return self.error <= 1.0
+
+
+def finished(
+    errors: list[float], better: tuple[int, ...], monkeypatch: pytest.MonkeyPatch
+) -> list[tuple[int, int]]:
+    """How often each structure was led further and to its end; further, one halves its error."""
+
+    def further(one: Begun) -> Begun:
+        return replace(one, further=one.further + 1, error=0.5 * one.error)
+
+    def to_its_end(one: Begun) -> Begun:
+        return replace(one, ends=one.ends + 1)
+
+    def is_near(one: Begun, best: Begun, declared: Any) -> bool:
+        return one.error <= 2.0 * best.error
+
+    monkeypatch.setattr(FittedStructure, "further", further)
+    monkeypatch.setattr(FittedStructure, "finished", to_its_end)
+    monkeypatch.setattr(structure_fits, "is_near", is_near)
+    every = cast(Any, [Begun(e) for e in errors])
+    found = cast(Any, structure_fits._finished(every, better, every[0]))
+    return [(one.further, one.ends) for one in found]
+
+
+def test_beside_noise_alone_those_that_come_near(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = finished([9.0, 1.0, 3.0, 7.0], (1, 2, 3), monkeypatch)
+    assert found == [(0, 0), (0, 1), (1, 1), (1, 0)]
+
+
+def test_beside_more_than_noise_all_of_the_better_half(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = finished([9.0, 1.5, 3.0, 7.0], (1, 2, 3), monkeypatch)
+    assert found == [(0, 0), (0, 1), (0, 1), (0, 1)]
+
+
+def test_without_any(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert finished([2.0], (), monkeypatch) == [(0, 0)]
