@@ -47,6 +47,36 @@ class Rebuilt:
         return tuple(effect_key(e.effect, e.axis) for e in self.added)
 
 
+USUAL_INERTIA, SPAN = 0.2, 30.0  # kg m^2; inertia that the starts are for, 1; either way
+
+
+def to_scale(rebuilt: Rebuilt, inertia: Mapping[str, float]) -> Rebuilt:
+    """A structure with the starts of all stiffnesses, dampings and torques that came with it in
+    proportion to the `inertia` in kg m^2 by axis, where that is far from usual: then they swing at
+    the same frequencies.
+    """
+    own = parameters_of(place_effects(rebuilt.platform))
+    factors = {}
+    for name in rebuilt.starts[0]:
+        axis = next((a for a in inertia if name.endswith(f"_{a}")), None)
+        ratio = 1.0 if axis is None else inertia[axis] / USUAL_INERTIA
+        is_usual = not own[name].unit.startswith("N m") or 1.0 / SPAN <= ratio <= SPAN
+        factors[name] = 1.0 if is_usual else ratio
+
+    def scaled(name: str, value: float) -> float:
+        return min(max(value * factors[name], own[name].lower), own[name].upper)
+
+    parameters = tuple(
+        replace(p, value=scaled(p.name, p.value)) if p.name in factors else p
+        for p in rebuilt.platform.parameters
+    )
+    return replace(
+        rebuilt,
+        platform=replace(rebuilt.platform, parameters=parameters),
+        starts=tuple({n: scaled(n, v) for n, v in start.items()} for start in rebuilt.starts),
+    )
+
+
 def structures(platform: Platform) -> tuple[tuple[Rebuilt, ...], dict[str, str]]:
     """`platform` rebuilt with every effect of the catalogue that says how, on every axis that has
     what it needs; and, by key, why other effects are no candidates of a diagnosis.

@@ -7,9 +7,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import variants
-from ptp_symbolic.models.structures import Rebuilt, pairs, structures
+from ptp_symbolic.models.structures import Rebuilt, pairs, structures, to_scale
 from ptp_symbolic.numeric.diagnose.fitted_model import (
     FittedModel,
     SearchProblem,
@@ -123,6 +125,7 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     structure that fits best, and of the declared one where that is beaten by little.
     """
     every, untried = structures(platform)
+    every = _to_scale(every, platform)
     platforms = _platforms(every)
 
     def searched(
@@ -165,6 +168,20 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     return Choice(chosen, terms.decided, rows, {**untried, **fitted.failed}, is_cut_short)
 
 
+def _to_scale(every: Sequence[Rebuilt], platform: Platform) -> tuple[Rebuilt, ...]:
+    """Structures with their starts in the scale of a platform."""
+    model = model_of(platform)
+    axes, states = model.module.AXES, model.state_names
+    x, u = np.zeros(len(states)), np.zeros(len(model.input_names))
+    p = model.parameter_vector({d.name: d.value for d in platform.parameters})
+    mass, inertia = np.zeros((len(states), len(states))), dict.fromkeys(axes, 0.0)
+    model.module.mass_matrix(0.0, x, u, p, np.ones(len(model.mode_names)), mass)
+    bodies = [*axes, *(a for a in axes if f"omega_gear_{a}" in states)]
+    for axis, own in zip(bodies, np.diag(mass), strict=False):
+        inertia[axis] += float(own)
+    return tuple(to_scale(rebuilt, inertia) for rebuilt in every)
+
+
 def _platforms(every: Sequence[Rebuilt]) -> dict[tuple[tuple[str, ...], frozenset[str]], Platform]:
     """The platforms of structures by keys and mechanisms: kinds of one effect have one key."""
     return {(rebuilt.keys, rebuilt.provides): rebuilt.platform for rebuilt in every}
@@ -183,7 +200,7 @@ def _over_windows(platform: Platform, fitted: Fitted, terms: Searched, logs: Log
         return fitted.over_windows_too(logs)
     beside = with_effects(platform, replace(trial, candidates=kept))
     own = {s.keys for s in fitted.every}
-    every = [rebuilt for rebuilt in structures(beside)[0] if rebuilt.keys in own]
+    every = [r for r in _to_scale(structures(beside)[0], platform) if r.keys in own]
     found = fit_structures(beside, every, logs)
     found = found if found.quiet else found.over_windows_too(logs)
     return found if found.order else fitted.over_windows_too(logs)
@@ -206,7 +223,7 @@ def _paired(
         return fitted, ()
     declared = next(r for r in every if (r.keys, r.provides) == (best.keys, best.provides))
     there = variants.extended(declared.platform, (), best.trial.values, ())
-    beside = pairs(replace(declared, platform=there))
+    beside = _to_scale(pairs(replace(declared, platform=there)), there)
     logs.progress(f"fitting pairs with {' + '.join(best.keys)}")
     found = fit_structures(there, beside, logs)
     if not found.quiet:

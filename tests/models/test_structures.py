@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.models.structures import structures
+from ptp_symbolic.models.structures import structures, to_scale
 from ptp_symbolic.models.variants import candidate_effects, with_candidates
 from ptp_symbolic.platform import (
     EffectDeclaration,
@@ -125,3 +125,15 @@ def test_what_contains_another_structure_provides_all_that_it_does() -> None:
     assert shaft < found["backlash@pan", "shaft_compliance@pan"].provides
     assert shaft <= found["harmonic_drive@pan",].provides
     assert not shaft <= found["measurement_lag@pan",].provides
+
+
+def test_starts_are_in_the_scale_of_a_heavy_axis() -> None:
+    """So that a shaft swings as fast on it as on a usual one: by its stiffness over the inertia."""
+    platform = platform_of(*BODIES, *SERVO)
+    (shaft,) = [s for s in structures(platform)[0] if s.keys == ("shaft_compliance@pan",)]
+    usual, heavy = (to_scale(shaft, {"pan": inertia}) for inertia in (0.2, 200.0))
+    assert usual.starts == shaft.starts
+    for before, after in zip(shaft.starts, heavy.starts, strict=True):
+        assert after == pytest.approx({name: 1000.0 * value for name, value in before.items()})
+    declared = {p.name: p.value for p in heavy.platform.parameters}
+    assert declared == heavy.starts[0]
