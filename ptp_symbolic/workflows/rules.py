@@ -336,10 +336,11 @@ RULES = (
     ),
     Rule(
         "alternative structures",
-        "Structures that predict as well as the chosen one form a group with it.",
+        "Structures that predict as well as the chosen one form a group with it; where more than"
+        " noise remains, all that come near it.",
         _in("structure_choice", "alternatives", package=WORKFLOWS),
         _always([]),
-        "safety: a group in place of one name",
+        "an antenna (a lag in place of a shaft)",
     ),
     Rule(
         "simplest forms",

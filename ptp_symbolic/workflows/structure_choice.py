@@ -159,10 +159,10 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     is_late = not terms.is_noise_alone and logs.allowance.is_over
     if not terms.is_noise_alone and not is_late:
         outcomes, terms = _at_length(outcomes, terms, searched)
-    chosen, refused = _chosen(terms.decided, [s.decided for s in outcomes], fitted.every, logs)
+    chosen, refused = _chosen(terms.decided, [s.decided for s in outcomes], fitted, logs)
     order = fitted.order
     rest = [s for s in fitted.every if s not in order]
-    alike = alternatives(chosen.structure, fitted.every) if chosen.structure else ()
+    alike = _alike(chosen, fitted)
     rows = tuple(_row(s, fitted.declared, chosen, refused, alike) for s in [*order, *rest])
     is_cut_short = is_late or any(s.found.is_cut_short for s in [terms, *outcomes])
     return Choice(chosen, terms.decided, rows, {**untried, **fitted.failed}, is_cut_short)
@@ -349,9 +349,10 @@ def _is_all_its_own(structure: FittedStructure, platform: Platform) -> bool:
 
 
 def _chosen(
-    terms: Outcome, outcomes: Sequence[Outcome], others: Sequence[FittedStructure], logs: Logs
+    terms: Outcome, outcomes: Sequence[Outcome], fitted: Fitted, logs: Logs
 ) -> tuple[Outcome, dict[FittedStructure, str]]:
     """The outcome that predicts best, and why structures that were followed are not named."""
+    others = fitted.every
     refused: dict[FittedStructure, str] = {}
     accepted: list[Outcome] = []
     as_good: list[Alternative] = []
@@ -369,7 +370,7 @@ def _chosen(
         if why is None and is_beaten_by_terms(final, terms, problem.material):
             why = f"{' + '.join(terms.found.chosen.keys)} predicts better, but is not confirmed"
         if why is None:
-            named = _with_structure(outcome, terms, earned, others, logs)
+            named = _with_structure(outcome, terms, earned, fitted, logs)
             if _is_borne_out(named, quiet):
                 accepted.append(named)
                 continue
@@ -440,7 +441,7 @@ def _beside(terms: Outcome, as_good: Sequence[Alternative]) -> Outcome:
 
 
 def _with_structure(
-    outcome: Outcome, terms: Outcome, earned: Gain, others: Sequence[FittedStructure], logs: Logs
+    outcome: Outcome, terms: Outcome, earned: Gain, fitted: Fitted, logs: Logs
 ) -> Outcome:
     """The outcome with its structure named: among the effects of the final model, what was declared
     as the model before.
@@ -449,10 +450,9 @@ def _with_structure(
     assert structure is not None
     own = named_effects(structure, verdict.final)
     final = replace(verdict.final, candidates=(*own, *verdict.final.candidates))
-    alike = [Alternative(s.trial, gain_over(structure, s)) for s in alternatives(structure, others)]
-    names = {
-        key for s in alternatives(structure, others) for key in s.keys if key not in structure.keys
-    }
+    equals = _alike(outcome, fitted)
+    alike = [Alternative(s.trial, gain_over(structure, s)) for s in equals]
+    names = {key for s in equals for key in s.keys if key not in structure.keys}
     group = {c.key: tuple(sorted(names)) for c in own}
     merged = {**verdict.confusable, **group}
     quiet = verdict.word not in (PARTLY, UNEXPLAINED)
@@ -474,6 +474,14 @@ def _with_structure(
             held_out=held_out_gain(verdict.after, before),
         ),
     )
+
+
+def _alike(outcome: Outcome, fitted: Fitted) -> list[FittedStructure]:
+    """The structures that the one of an outcome is not told from."""
+    if outcome.structure is None:
+        return []
+    quiet = outcome.verdict.word not in (PARTLY, UNEXPLAINED)
+    return alternatives(outcome.structure, fitted.every, None if quiet else fitted.declared)
 
 
 def _declared_validation(terms: Outcome, after: Fit, logs: Logs) -> Fit:
@@ -506,7 +514,7 @@ def _row(
     elif failed:
         why = f"the fit failed: {failed}"
     elif structure in alike and structure not in refused:
-        why = "predicts as well as the chosen structure, both without terms"
+        why = "cannot be told from the chosen structure by these logs, both without terms"
     else:
         why = refused.get(structure) or _why_not_followed(structure, declared, chosen.structure)
     earned = None if failed else gain_over(structure, declared)

@@ -151,6 +151,18 @@ def test_a_lag_of_the_encoder_does_not_win_over_the_shaft(
     lag = fits["measurement_lag@pan",]
     assert lag not in alternatives(order[0], others)
     assert fits["harmonic_drive@pan",] not in alternatives(order[0], others), "it contains a shaft"
+    assert lag not in alternatives(order[0], others, rigid), "it is far from the shaft"
+
+
+@pytest.mark.early
+def test_beside_more_than_noise_what_comes_near_and_beats_the_declared_one_is_not_told_apart(
+    fits: dict[tuple[str, ...], FittedStructure], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rigid, *others = fits.values()
+    shaft, lag = fits["shaft_compliance@pan",], fits["measurement_lag@pan",]
+    where = "ptp_symbolic.numeric.diagnose.structures.is_near"
+    monkeypatch.setattr(where, lambda one, best, declared: one is lag)
+    assert (lag in alternatives(shaft, others, rigid)) is is_better(lag, rigid)
 
 
 @pytest.mark.early

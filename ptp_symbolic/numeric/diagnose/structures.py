@@ -243,17 +243,29 @@ def is_near(one: FittedStructure, best: FittedStructure, declared: FittedStructu
 
 
 def alternatives(
-    chosen: FittedStructure, found: Sequence[FittedStructure]
+    chosen: FittedStructure,
+    found: Sequence[FittedStructure],
+    declared: FittedStructure | None = None,
 ) -> list[FittedStructure]:
     """The other structures that are not significantly worse than the chosen one, each without
     terms; not those that have all of its mechanisms, for what they have more shows in nothing.
+
+    Where more than noise remains, what is missing decides which of them fits best without it: then
+    the `declared` structure is given, and those count too that are better than that one, and near
+    the chosen one (see `is_near`).
     """
     others = [
         s
         for s in found
         if s is not chosen and not s.trial.fit.failed and not chosen.provides <= s.provides
     ]
-    beaten = side_by_side(lambda s: is_better(chosen, s), others)
+
+    def is_beaten(one: FittedStructure) -> bool:
+        if not is_better(chosen, one):
+            return False
+        return declared is None or not (is_near(one, chosen, declared) and is_better(one, declared))
+
+    beaten = side_by_side(is_beaten, others)
     return [s for s, worse in zip(others, beaten, strict=True) if not worse]
 
 
