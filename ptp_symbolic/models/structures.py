@@ -47,7 +47,8 @@ class Rebuilt:
         return tuple(effect_key(e.effect, e.axis) for e in self.added)
 
 
-USUAL_INERTIA, SPAN = 0.2, 30.0  # kg m^2; inertia that the starts are for, 1; either way
+USUAL_INERTIA = 0.2  # kg m^2; of an axis that the starts of the effects suit
+SPAN = 30.0  # 1; so many times lighter or heavier, they suit still
 
 
 def to_scale(rebuilt: Rebuilt, inertia: Mapping[str, float]) -> Rebuilt:

@@ -361,7 +361,7 @@ RULES = (
         "A set is extended again without one of its members.",
         _in("search", "floated"),
         lambda stepwise, best, steps: (best, steps),
-        "none in 24 sets; a torque in place of a spring (test_search_roads)",
+        "none in 35 sets; a torque in place of a spring (test_search_roads)",
     ),
     Rule(
         "effects alone",

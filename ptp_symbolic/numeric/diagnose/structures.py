@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 from weakref import WeakKeyDictionary
 
+from ptp_symbolic.numeric.diagnose import fitted_model
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.confirm import is_moved_by_inputs
 from ptp_symbolic.numeric.diagnose.fitted_model import (
@@ -237,9 +238,12 @@ def deviance(structure: FittedStructure, declared: FittedStructure) -> float:
 
 
 def is_near(one: FittedStructure, best: FittedStructure, declared: FittedStructure) -> bool:
-    """Whether the mean square residual of a structure is at most e times that of the best one."""
-    excess = deviance(one, declared) - deviance(best, declared)
-    return excess <= sum(run.size for run in declared.trial.fit.runs)
+    """Whether a structure fits nearly as well as the best one (see `fitted_model.is_near`), in the
+    windows of the declared one.
+    """
+    pattern = declared.trial.fit.runs
+    trial, other = (on_runs_of(s.problem, s.trial, pattern) for s in (one, best))
+    return fitted_model.is_near(trial, [other])
 
 
 def alternatives(
@@ -250,9 +254,9 @@ def alternatives(
     """The other structures that are not significantly worse than the chosen one, each without
     terms; not those that have all of its mechanisms, for what they have more shows in nothing.
 
-    Where more than noise remains, what is missing decides which of them fits best without it: then
-    the `declared` structure is given, and those count too that are better than that one, and near
-    the chosen one (see `is_near`).
+    Where more than noise remains, which structure fits best without terms depends on what else is
+    missing. Then `declared` is given: structures that come near the chosen one (see `is_near`), and
+    predict better than the declared one, are alternatives too.
     """
     others = [
         s

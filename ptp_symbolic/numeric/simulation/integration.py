@@ -173,7 +173,7 @@ def integrate_smooth(
     """Integrate `model` at p [np] from x [n] over `stops` in s, as `integrate` does: status, time
     reached in s, state there, states [k, n] and ledger [k, 3] at `times`, steps tried.
 
-    `limits` [6]: relative tolerance, largest step in s, most steps; `atol` [n].
+    `limits` begins with the relative tolerance, largest step in s, most steps; `atol` [n].
     """
     n, k, z = len(x), len(times), np.zeros
     width = -(-(n + 2 * ledger) // LANES) * LANES
