@@ -102,9 +102,12 @@ def test_at_the_upper_bound_the_step_goes_down() -> None:
     assert after.by_parameter[0, 0] == pytest.approx((1.0 - (1.0 - STEP) ** 3) / STEP)
 
 
-def test_where_the_shifted_simulation_fails_the_derivative_stays() -> None:
+@pytest.mark.parametrize("after", [None, np.array([1.0, 1e200, 1.0]), np.array([1.0, 1.0, np.nan])])
+def test_where_the_shifted_simulation_fails_or_flies_off_the_derivative_stays(
+    after: Floats | None,
+) -> None:
     runs = [evaluation(np.ones(3), np.full((3, 1), 2.0), np.zeros((3, 0)))]
-    refine = Secants(lambda run, phi, z: None, FAR[:1])
+    refine = Secants(lambda run, phi, z: after, FAR[:1])
     for _ in range(2):
         (after,) = refine(np.array([0.5]), NO_STARTS[:1], runs)
         assert np.all(after.by_parameter == 2.0)

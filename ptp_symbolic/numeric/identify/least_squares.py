@@ -110,7 +110,8 @@ class Secants:
 
     `residual(run, phi, z)` simulates one run (None: it failed); `upper` [nf] bounds phi. The first
     call compares every column of every run, later ones only those that misled, `chosen`; `step` is
-    that of the differences, in search coordinates, or one for each of them [nf].
+    that of the differences, in search coordinates, or one for each of them [nf]. A simulation that
+    failed or flew off replaces nothing.
     """
 
     residual: Residual
@@ -134,7 +135,7 @@ class Secants:
             shifted = phi.copy()
             shifted[column] += step
             after = self.residual(run, shifted, z[run])
-            if after is None:
+            if after is None or not np.max(np.abs(after), initial=0.0) < BIGGEST * abs(step):
                 return evaluations[run].by_parameter[:, column]
             return (after - evaluations[run].residual) / step
 
