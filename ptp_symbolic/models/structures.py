@@ -13,6 +13,7 @@ from ptp_symbolic.models.variants import candidate_effects, described_by
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, effect_key
 from ptp_symbolic.symbolic.derivation.placement import (
     available_quantities,
+    find_effect,
     parameters_of,
     place_effects,
     readings,
@@ -31,15 +32,15 @@ class Rebuilt:
     `added` are the effects that it has more, the one it is named after first; `removed` those whose
     place they take. `starts` are values of the parameters that came with them, from which a fit
     begins. Every effect `provides` mechanisms: where that of another structure has all of these,
-    it contains this one.
+    it contains this one. A `note` says what else is other than declared.
     """
 
-    title: str
     platform: Platform
     added: tuple[EffectDeclaration, ...]
     removed: tuple[EffectDeclaration, ...]
     starts: tuple[Mapping[str, float], ...]
     provides: frozenset[str]
+    note: str = ""
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -47,6 +48,7 @@ class Rebuilt:
         return tuple(effect_key(e.effect, e.axis) for e in self.added)
 
 
+BEHIND = "joint"  # the site of friction behind a shaft or a gap
 USUAL_INERTIA = 0.2  # kg m^2; of an axis that the starts of the effects suit
 SPAN = 30.0  # 1; so many times lighter or heavier, they suit still
 
@@ -93,7 +95,8 @@ def structures(platform: Platform) -> tuple[tuple[Rebuilt, ...], dict[str, str]]
         try:
             why = _lacking(platform, effect, axis)
             if why is None:
-                found.append(_rebuilt(platform, effect, axis))
+                usual = _rebuilt(platform, effect, axis)
+                found += (usual, *_with_friction_behind(usual, platform, effect, axis))
         except InputError as error:
             why = f"the platform cannot be rebuilt with it: {error}"
         if why is not None:
@@ -110,10 +113,10 @@ def pairs(first: Rebuilt) -> tuple[Rebuilt, ...]:
     return tuple(
         replace(
             second,
-            title=f"{first.title}, {second.title}",
             added=(*first.added, *second.added),
             removed=(*first.removed, *second.removed),
             provides=first.provides | second.provides,
+            note=first.note or second.note,
         )
         for second in structures(first.platform)[0]
         if not own & {(e.effect, e.axis) for e in second.removed}
@@ -201,13 +204,31 @@ def _rebuilt(platform: Platform, effect: Effect, axis: str | None) -> Rebuilt:
     rebuilt = replace(bare, parameters=parameters)
     place_effects(rebuilt)
     return Rebuilt(
-        effect.title,
         rebuilt,
         added,
         removed,
         tuple(dict(zip(names, point, strict=True)) for point in itertools.product(*grid)),
         _mechanisms(rebuilt, new),
     )
+
+
+def _with_friction_behind(
+    as_declared: Rebuilt, platform: Platform, effect: Effect, axis: str | None
+) -> tuple[Rebuilt, ...]:
+    """`platform` with an effect that splits the axis, and the dry friction that this leaves at the
+    gear behind it, as in the bearings of a heavy load. None where it is said where friction sits.
+    """
+    splits = any(one.startswith(("shaft", "play")) for one in as_declared.provides)
+    movable = [
+        e
+        for e in platform.effects
+        if splits and e.axis == axis and e.site is None and find_effect(e.effect).sites
+    ]
+    if not movable:
+        return ()
+    moved = tuple(replace(e, site=BEHIND) if e in movable else e for e in platform.effects)
+    rebuilt = _rebuilt(replace(platform, effects=moved), effect, axis)
+    return (replace(rebuilt, note=f"friction at the {BEHIND}"),)
 
 
 def _within(declared: ParameterDeclaration, own: Parameter) -> ParameterDeclaration:
@@ -226,14 +247,15 @@ def _within(declared: ParameterDeclaration, own: Parameter) -> ParameterDeclarat
 
 def _mechanisms(platform: Platform, added: set[tuple[str, str | None]]) -> frozenset[str]:
     """What the effects `added` to `platform` bring, by kind and axis: shafts, gaps, what they
-    change.
+    change. A shaft before the friction contains none behind it.
     """
+    before = {e.axis: " before friction" for e in platform.effects if e.site == BEHIND}
     found: set[str] = set()
     for effect, place in place_effects(platform):
         if (effect.id, place.axis) in added:
             given = effect.turning_contribution_at(place)
-            found |= {f"shaft {s.axis}" for s in given.shafts}
-            found |= {f"play {p.axis}" for p in given.plays}
+            found |= {f"shaft {s.axis}{before.get(place.axis, '')}" for s in given.shafts}
+            found |= {f"play {p.axis}{before.get(place.axis, '')}" for p in given.plays}
             found |= {f"change {name}" for name in given.changes}
             found |= {f"friction {f.axis}" for f in given.frictions}
             found |= {f"torque {rate}" for rate in given.torques}

@@ -156,6 +156,8 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     outcomes = [searched(s, brief=True) for s in followed]
     if not logs.allowance.is_over:
         outcomes = [_from_what_contains_it(one, outcomes, searched) for one in outcomes]
+    if not terms.is_noise_alone:
+        fitted, outcomes = _followed_on(platform, fitted, outcomes, searched, logs)
     is_late = not terms.is_noise_alone and logs.allowance.is_over
     if not terms.is_noise_alone and not is_late:
         outcomes, terms = _at_length(outcomes, terms, searched)
@@ -188,22 +190,73 @@ def _platforms(every: Sequence[Rebuilt]) -> dict[tuple[tuple[str, ...], frozense
 
 
 def _over_windows(platform: Platform, fitted: Fitted, terms: Searched, logs: Logs) -> Fitted:
-    """The structures fitted over windows. Where the effects that were found in the declared one
-    surely halve its squared error, they are part of every structure: some structures show beside
-    them only. A delay is not among them, for it makes up for the lag of a structure.
+    """The structures fitted over windows, beside the effects that were found in the declared one
+    (see `_with_found`): some structures show beside them only.
     """
-    trial = terms.found.chosen
-    declared = on_runs_of(terms.found.problem, terms.found.declared, trial.fit.runs)
+    beside = _with_found(platform, terms, terms.found.declared)
+    found = None if beside is None else _fitted_beside(platform, beside, fitted, logs)
+    return found or fitted.over_windows_too(logs)
+
+
+def _with_found(platform: Platform, searched: Searched, before: FittedModel) -> Platform | None:
+    """The platform with the effects that a search found, where these surely halve the squared error
+    of what was there `before`; None where they do not. A delay is not among them, for it makes up
+    for the lag of a structure.
+    """
+    trial = searched.found.chosen
     late = {trial.fit.model.parameter_names[k] for k in trial.fit.model.input_delays if k >= 0}
     kept = tuple(c for c in trial.candidates if not late & set(c.parameters))
-    if all(c.is_declared_value for c in kept) or not gain(trial, declared).is_most:
-        return fitted.over_windows_too(logs)
-    beside = with_effects(platform, replace(trial, candidates=kept))
+    if all(c.is_declared_value for c in kept):
+        return None
+    without = on_runs_of(searched.found.problem, before, trial.fit.runs)
+    return (
+        with_effects(platform, replace(trial, candidates=kept))
+        if gain(trial, without).is_most
+        else None
+    )
+
+
+def _fitted_beside(
+    platform: Platform, beside: Platform, fitted: Fitted, logs: Logs
+) -> Fitted | None:
+    """The structures fitted again `beside` effects that were found; None where none predicts better
+    than these alone.
+    """
     own = {s.keys for s in fitted.every}
     every = [r for r in _to_scale(structures(beside)[0], platform) if r.keys in own]
     found = fit_structures(beside, every, logs)
     found = found if found.quiet else found.over_windows_too(logs)
-    return found if found.order else fitted.over_windows_too(logs)
+    return found if found.order else None
+
+
+def _followed_on(
+    platform: Platform,
+    fitted: Fitted,
+    outcomes: list[Searched],
+    searched: Callable[..., Searched],
+    logs: Logs,
+) -> tuple[Fitted, list[Searched]]:
+    """The structures fitted once more beside the effects that were found in the best of those that
+    were followed, where that leaves more than noise; and the best of them followed too: which one
+    fits best without terms depends on the terms that are missing.
+    """
+    if not outcomes or any(s.is_noise_alone for s in outcomes) or logs.allowance.is_over:
+        return fitted, outcomes
+    best = _best_fit(outcomes)
+    beside = _with_found(platform, best, best.found.declared)
+    found = None if beside is None else _fitted_beside(platform, beside, fitted, logs)
+    if found is None:
+        return fitted, outcomes
+    there = {(s.keys, s.provides): s for s in found.every}
+    moved = [
+        replace(s, structure=there.get((s.structure.keys, s.structure.provides), s.structure))
+        for s in outcomes
+        if s.structure is not None
+    ]
+    first = found.order[0]
+    if all(s.structure is not first for s in moved) and not logs.allowance.is_over:
+        moved.append(searched(first, brief=True))
+    return found, moved
 
 
 def _paired(

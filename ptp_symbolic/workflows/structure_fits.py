@@ -134,7 +134,8 @@ def _begun(
     )
     if rebuilt is None:
         return begin_structure((), frozenset(), problem, (), known)
-    return begin_structure(rebuilt.keys, rebuilt.provides, problem, rebuilt.starts, known)
+    keys, provides, starts = rebuilt.keys, rebuilt.provides, rebuilt.starts
+    return begin_structure(keys, provides, problem, starts, known, rebuilt.note)
 
 
 def _better_half(begun: Sequence[FittedStructure], declared: FittedStructure) -> tuple[int, ...]:

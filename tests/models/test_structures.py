@@ -120,17 +120,46 @@ def test_no_effect_is_left_out_in_silence(effects: list[tuple[str, str | None]])
 
 
 def test_what_contains_another_structure_provides_all_that_it_does() -> None:
-    found = {s.keys: s for s in structures(platform_of(*BODIES, *SERVO))[0]}
+    found = {s.keys: s for s in structures(platform_of(*BODIES, *SERVO))[0] if not s.note}
     shaft = found["shaft_compliance@pan",].provides
     assert shaft < found["backlash@pan", "shaft_compliance@pan"].provides
     assert shaft <= found["harmonic_drive@pan",].provides
     assert not shaft <= found["measurement_lag@pan",].provides
 
 
+def test_what_splits_an_axis_is_tried_with_friction_at_the_gear_and_behind_it() -> None:
+    """An antenna turns in bearings of its own; where it is said where friction sits, it stays."""
+    platform = platform_of(*BODIES, *SERVO)
+    found = structures(platform)[0]
+    assert len({(s.keys, s.provides) for s in found}) == len(found)
+    sites = {
+        s.keys: [e.site for t in found if t.keys == s.keys for e in frictions(t.platform)]
+        for s in found
+    }
+    assert sites["shaft_compliance@pan",] == [None, "joint"]
+    assert sites["backlash@pan", "shaft_compliance@pan"] == [None, "joint"]
+    assert sites["actuator_lag@pan",] == [None]
+    assert {s.note for s in found} == {"", "friction at the joint"}
+    shafts = [s for s in found if s.keys == ("shaft_compliance@pan",)]
+    assert not shafts[0].provides <= shafts[1].provides
+    assert not shafts[1].provides <= shafts[0].provides
+    said = replace(
+        platform,
+        effects=tuple(
+            replace(e, site="gear") if e.effect == "csvs_friction" else e for e in platform.effects
+        ),
+    )
+    assert [s.keys for s in structures(said)[0]].count(("shaft_compliance@pan",)) == 1
+
+
+def frictions(platform: Platform) -> list[EffectDeclaration]:
+    return [e for e in platform.effects if e.effect == "csvs_friction"]
+
+
 def test_starts_are_in_the_scale_of_a_heavy_axis() -> None:
     """So that a shaft swings as fast on it as on a usual one: by its stiffness over the inertia."""
     platform = platform_of(*BODIES, *SERVO)
-    (shaft,) = [s for s in structures(platform)[0] if s.keys == ("shaft_compliance@pan",)]
+    shaft, _ = [s for s in structures(platform)[0] if s.keys == ("shaft_compliance@pan",)]
     usual, heavy = (to_scale(shaft, {"pan": inertia}) for inertia in (0.2, 200.0))
     assert usual.starts == shaft.starts
     for before, after in zip(shaft.starts, heavy.starts, strict=True):

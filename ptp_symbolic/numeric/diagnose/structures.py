@@ -131,10 +131,11 @@ def begin_structure(
     problem: SearchProblem,
     starts: Sequence[Mapping[str, float]],
     known: Mapping[str, float],
+    note: str = "",
 ) -> FittedStructure:
     """The structure of `problem`, begun from `starts` (of the parameters that the effects named in
     `keys` bring), each beside the declared start and beside `known` values of a fit of the declared
-    structure.
+    structure. A `note` says what else is other than declared.
     """
     proposals = propose(problem)
     own = {f.name: f for f in problem.free}
@@ -151,7 +152,10 @@ def begin_structure(
     begun = [fitted(problem, (), end.values, None, executor=run) for end in ends]
     trial = (halving(problem, begun, 1) or begun[:1])[0]
     proposals = replace(proposals, start=trial.values)
-    return FittedStructure(effects_of(problem, keys), provides, problem, trial, proposals)
+    added = effects_of(problem, keys)
+    if note:
+        added = (replace(added[0], title=f"{added[0].title}, {note}"), *added[1:])
+    return FittedStructure(added, provides, problem, trial, proposals)
 
 
 def effects_of(problem: SearchProblem, keys: Sequence[str]) -> tuple[Candidate, ...]:
