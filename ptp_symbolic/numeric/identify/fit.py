@@ -323,9 +323,9 @@ def carried_start(model: Model, run: Run, p: FloatArray, end: FloatArray) -> Flo
         if unknown.contact is not None:
             z[index] = 0.0
             z[index] = _place(model, run, p, z, index, unknown.contact, end)
-        elif unknown.name.startswith("omega_gear_"):
+        elif unknown.name.startswith(("omega_gear_", "theta_gear_")):
             gear = states.index(unknown.name)
-            joint = states.index(unknown.name.replace("omega_gear_", "omega_"))
+            joint = states.index(unknown.name.replace("_gear_", "_", 1))
             z[index] = (end[gear] - end[joint]) - (run.start[gear] - run.start[joint])
         else:
             state = states.index(unknown.name)
