@@ -244,7 +244,9 @@ def _followed_on(
         return fitted, outcomes
     best = _best_fit(outcomes)
     beside = _with_found(platform, best, best.found.declared)
-    found = None if beside is None else _fitted_beside(platform, beside, fitted, logs)
+    known = {effect.key for effect in fitted.declared.problem.model.effects}
+    is_new = beside is not None and not known.issuperset(effect_keys(beside))
+    found = _fitted_beside(platform, beside, fitted, logs) if beside and is_new else None
     if found is None:
         return fitted, outcomes
     there = {(s.keys, s.provides): s for s in found.every}
