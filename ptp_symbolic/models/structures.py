@@ -49,6 +49,7 @@ class Rebuilt:
 
 
 BEHIND = "joint"  # the site of friction behind a shaft or a gap
+BEFORE = " before friction"  # ends the name of the mechanism of such a shaft or gap
 USUAL_INERTIA = 0.2  # kg m^2; of an axis that the starts of the effects suit
 SPAN = 30.0  # 1; so many times lighter or heavier, they suit still
 
@@ -103,6 +104,11 @@ def structures(platform: Platform) -> tuple[tuple[Rebuilt, ...], dict[str, str]]
             untried.setdefault(key, why)
     tried = {key for each in found for key in each.keys}
     return tuple(found), {key: why for key, why in untried.items() if key not in tried}
+
+
+def on_any_side(provides: frozenset[str]) -> frozenset[str]:
+    """Mechanisms without the side of them on which friction sits."""
+    return frozenset(one.removesuffix(BEFORE) for one in provides)
 
 
 def pairs(first: Rebuilt) -> tuple[Rebuilt, ...]:
@@ -249,7 +255,7 @@ def _mechanisms(platform: Platform, added: set[tuple[str, str | None]]) -> froze
     """What the effects `added` to `platform` bring, by kind and axis: shafts, gaps, what they
     change. A shaft before the friction contains none behind it.
     """
-    before = {e.axis: " before friction" for e in platform.effects if e.site == BEHIND}
+    before = {e.axis: BEFORE for e in platform.effects if e.site == BEHIND}
     found: set[str] = set()
     for effect, place in place_effects(platform):
         if (effect.id, place.axis) in added:

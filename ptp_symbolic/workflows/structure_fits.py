@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.models.structures import Rebuilt
+from ptp_symbolic.models.structures import Rebuilt, on_any_side
 from ptp_symbolic.numeric.data import Log
 from ptp_symbolic.numeric.diagnose.fitted_model import side_by_side
 from ptp_symbolic.numeric.diagnose.structures import (
@@ -139,10 +139,17 @@ def _begun(
 
 
 def _better_half(begun: Sequence[FittedStructure], declared: FittedStructure) -> tuple[int, ...]:
-    """Which structures fit better than half of them, at least as many as are followed."""
+    """Which structures fit better than half of them, at least as many as are followed; of one with
+    friction on either side that side alone which is far ahead.
+    """
     cost = [deviance(b, declared) for b in begun]
-    best_first = sorted(range(len(begun)), key=cost.__getitem__)
-    return tuple(best_first[: max(FOLLOWED, (len(begun) + 1) // 2)])
+    ahead: dict[tuple[tuple[str, ...], frozenset[str]], FittedStructure] = {}
+    left = []
+    for k in sorted(range(len(begun)), key=cost.__getitem__):
+        one = begun[k]
+        if is_near(one, ahead.setdefault((one.keys, on_any_side(one.provides)), one), declared):
+            left.append(k)
+    return tuple(left[: max(FOLLOWED, (len(left) + 1) // 2)])
 
 
 def _from_those_that_contain(

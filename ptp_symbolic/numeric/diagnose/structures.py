@@ -199,17 +199,20 @@ def gain_over(one: FittedStructure, other: FittedStructure) -> Gain:
 
 def by_fit(declared: FittedStructure, found: Sequence[FittedStructure]) -> list[FittedStructure]:
     """The structures that predict a material share better than the declared one, the best fit
-    first; but one with fewer parameters comes before another that it predicts as well as.
+    first; but of those that come near that (see `is_near`) one with fewer parameters comes before
+    another that it predicts as well as.
     """
     whole = [s for s in found if not s.trial.fit.failed]
     gains = side_by_side(lambda s: gain_over(s, declared), whole)
     better = [s for s, g in zip(whole, gains, strict=True) if g.share >= declared.problem.material]
     each = side_by_side(lambda s: deviance(s, declared), better)
     cost = {id(s): m for s, m in zip(better, each, strict=True)}
+    near = min(cost.values(), default=0.0) + sum(r.size for r in declared.trial.fit.runs)
     left, ordered = sorted(better, key=lambda s: cost[id(s)]), []
     while left:
         best = left[0]
-        simpler = [s for s in left[1:] if _size(s) < _size(best) and _is_as_good(s, best)]
+        others = [s for s in left[1:] if _size(s) < _size(best) and cost[id(s)] <= near]
+        simpler = [s for s in others if _is_as_good(s, best)]
         best = min(simpler, key=_size, default=best)
         ordered.append(best)
         left.remove(best)
