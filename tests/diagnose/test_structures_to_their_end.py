@@ -18,6 +18,8 @@ class Begun:
     error: float
     further: int = 0
     ends: int = 0
+    keys: tuple[str, ...] = ()
+    provides: frozenset[str] = frozenset()
 
     @property
     def is_noise_alone(self) -> bool:
@@ -58,3 +60,25 @@ def test_beside_more_than_noise_all_of_the_better_half(monkeypatch: pytest.Monke
 
 def test_without_any(monkeypatch: pytest.MonkeyPatch) -> None:
     assert finished([2.0], (), monkeypatch) == [(0, 0)]
+
+
+def test_of_friction_on_either_side_the_side_that_is_far_behind_is_left(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def is_near(one: Begun, best: Begun, declared: Any) -> bool:
+        return one.error <= 2.0 * best.error
+
+    monkeypatch.setattr(structure_fits, "deviance", lambda one, declared: one.error)
+    monkeypatch.setattr(structure_fits, "is_near", is_near)
+    gear, behind = frozenset({"shaft pan"}), frozenset({"shaft pan before friction"})
+    every = [
+        Begun(9.0, keys=("shaft@pan",), provides=gear),
+        Begun(2.0, keys=("shaft@pan",), provides=behind),
+        Begun(3.0, keys=("drive@pan",), provides=gear),
+        Begun(5.0, keys=("drive@pan",), provides=behind),
+        Begun(6.0, keys=("lag@pan",), provides=frozenset({"change reading"})),
+    ]
+    found = structure_fits._better_half(cast(Any, every), cast(Any, every[0]))
+    assert found == (1, 2), "two of the four that are left; the shaft before friction is none"
+    found = structure_fits._better_half(cast(Any, [*every, Begun(1.0)]), cast(Any, every[0]))
+    assert found == (5, 1, 2)

@@ -1,0 +1,120 @@
+"""Which structure fits best depends on what is missing beside it: where more than noise remains,
+all are compared again beside the effects that were found in the best of them.
+"""
+
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+from typing import Any, cast
+
+import pytest
+
+from ptp_symbolic.workflows import structure_choice
+from ptp_symbolic.workflows.structure_choice import Searched
+
+LAG, SHAFT, GAP = "actuator_lag@pan", "shaft_compliance@pan", "backlash@pan"
+
+
+@dataclass(frozen=True)
+class Structure:
+    keys: tuple[str, ...]
+    provides: frozenset[str] = frozenset()
+    fit: str = "alone"
+
+
+@dataclass
+class Fits:
+    """Structures in their order, and the effects of the declared one that they were fitted with."""
+
+    order: list[Structure]
+    beside: tuple[str, ...] = ()
+
+    @property
+    def every(self) -> list[Structure]:
+        return self.order
+
+    @property
+    def declared(self) -> Any:
+        effects = [SimpleNamespace(key=key) for key in self.beside]
+        return SimpleNamespace(problem=SimpleNamespace(model=SimpleNamespace(effects=effects)))
+
+
+@dataclass
+class Scene:
+    """What was called: the effects that structures were fitted beside, and what was searched."""
+
+    monkeypatch: pytest.MonkeyPatch
+    finds: str | None = "direction_dependent_friction@pan"
+    noise_alone: bool = False
+    is_over: bool = False
+    fitted_beside: list[str] = field(default_factory=list)
+    searched: list[tuple[str, ...]] = field(default_factory=list)
+
+    def outcome(self, structure: Structure) -> Searched:
+        found = SimpleNamespace(declared=None)
+        one = Searched(cast(Any, None), cast(Any, structure), cast(Any, None), cast(Any, found))
+        one.__dict__["is_noise_alone"] = self.noise_alone
+        return one
+
+    def run(self, fits: Fits, followed: list[Structure], after: Fits) -> tuple[Any, list[Searched]]:
+        def again(platform: Any, beside: str, fitted: Any, logs: Any) -> Fits:
+            self.fitted_beside.append(beside)
+            return after
+
+        def search(structure: Structure, brief: bool) -> Searched:
+            assert brief
+            self.searched.append(structure.keys)
+            return self.outcome(structure)
+
+        patch = self.monkeypatch.setattr
+        patch(Searched, "is_noise_alone", self.noise_alone)
+        patch(structure_choice, "_best_fit", lambda searches: searches[0])
+        patch(structure_choice, "_with_found", lambda *given: self.finds)
+        patch(structure_choice, "effect_keys", lambda beside: [beside])
+        patch(structure_choice, "_fitted_beside", again)
+        logs = SimpleNamespace(allowance=SimpleNamespace(is_over=self.is_over))
+        outcomes = [self.outcome(s) for s in followed]
+        found = structure_choice._followed_on(
+            cast(Any, None), cast(Any, fits), outcomes, cast(Any, search), cast(Any, logs)
+        )
+        return found
+
+
+BEFORE = Fits([Structure((LAG,)), Structure((SHAFT,)), Structure((GAP,))])
+AFTER = Fits([Structure((SHAFT,), fit="beside"), Structure((LAG,), fit="beside")])
+
+
+def test_the_best_beside_what_was_found_is_followed_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = Scene(monkeypatch)
+    fits, outcomes = scene.run(BEFORE, [BEFORE.order[0], BEFORE.order[2]], AFTER)
+    assert fits is AFTER
+    assert scene.fitted_beside == ["direction_dependent_friction@pan"]
+    assert scene.searched == [(SHAFT,)]
+    assert [cast(Any, s.structure).keys for s in outcomes] == [(LAG,), (GAP,), (SHAFT,)]
+    assert outcomes[0].structure is cast(Any, AFTER.order[1]), "judged as it fits beside it"
+    assert outcomes[1].structure is cast(Any, BEFORE.order[2]), "it was not fitted again"
+
+
+def test_one_that_was_followed_is_not_searched_twice(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = Scene(monkeypatch)
+    _, outcomes = scene.run(BEFORE, BEFORE.order[:2], AFTER)
+    assert not scene.searched
+    assert [s.structure for s in outcomes] == cast(Any, [AFTER.order[1], AFTER.order[0]])
+
+
+@pytest.mark.parametrize(
+    "given", [{"noise_alone": True}, {"finds": None}, {"is_over": True}], ids=str
+)
+def test_nothing_is_fitted_again_without_need(
+    monkeypatch: pytest.MonkeyPatch, given: dict[str, Any]
+) -> None:
+    scene = Scene(monkeypatch, **given)
+    fits, outcomes = scene.run(BEFORE, BEFORE.order[:2], AFTER)
+    assert fits is BEFORE and len(outcomes) == 2
+    assert not scene.fitted_beside and not scene.searched
+
+
+def test_structures_that_were_fitted_beside_it_stay(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = Scene(monkeypatch)
+    known = Fits(BEFORE.order, beside=("direction_dependent_friction@pan",))
+    fits, _ = scene.run(known, known.order[:2], AFTER)
+    assert fits is known and not scene.fitted_beside
