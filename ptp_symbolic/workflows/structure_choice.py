@@ -146,12 +146,14 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
         is_cut_short = is_stopped or terms.found.is_cut_short
         return Choice(terms.decided, terms.decided, (), untried, is_cut_short)
     known = terms.found.chosen.values if terms.is_noise_alone else None
-    fitted = fit_structures(platform, every, logs, known)
+    beside = None if terms.is_noise_alone else _with_found(platform, terms, terms.found.declared)
+    fitted = fit_structures(platform, every, logs, known, terms.found if beside else None)
     if not terms.is_noise_alone and not fitted.quiet and not logs.allowance.is_over:
-        fitted = _over_windows(platform, fitted, terms, logs)
+        again = _fitted_beside(platform, beside, fitted, logs) if beside else None
+        fitted = again or fitted.over_windows_too(logs)
         if not fitted.quiet and fitted.order and not logs.allowance.is_over:
-            fitted, beside = _paired(fitted, every, logs)
-            platforms |= _platforms(beside)
+            fitted, paired = _paired(fitted, every, logs)
+            platforms |= _platforms(paired)
     followed = fitted.quiet or ([] if terms.is_noise_alone else fitted.order[:FOLLOWED])
     outcomes = [searched(s, brief=True) for s in followed]
     if not logs.allowance.is_over:
@@ -187,15 +189,6 @@ def _to_scale(every: Sequence[Rebuilt], platform: Platform) -> tuple[Rebuilt, ..
 def _platforms(every: Sequence[Rebuilt]) -> dict[tuple[tuple[str, ...], frozenset[str]], Platform]:
     """The platforms of structures by keys and mechanisms: kinds of one effect have one key."""
     return {(rebuilt.keys, rebuilt.provides): rebuilt.platform for rebuilt in every}
-
-
-def _over_windows(platform: Platform, fitted: Fitted, terms: Searched, logs: Logs) -> Fitted:
-    """The structures fitted over windows, beside the effects that were found in the declared one
-    (see `_with_found`): some structures show beside them only.
-    """
-    beside = _with_found(platform, terms, terms.found.declared)
-    found = None if beside is None else _fitted_beside(platform, beside, fitted, logs)
-    return found or fitted.over_windows_too(logs)
 
 
 def _with_found(platform: Platform, searched: Searched, before: FittedModel) -> Platform | None:

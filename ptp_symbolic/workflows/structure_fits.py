@@ -9,10 +9,12 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.models.structures import Rebuilt, on_any_side
 from ptp_symbolic.numeric.data import Log
 from ptp_symbolic.numeric.diagnose.fitted_model import side_by_side
+from ptp_symbolic.numeric.diagnose.stepwise import Search
 from ptp_symbolic.numeric.diagnose.structures import (
     FittedStructure,
     begin_structure,
     by_fit,
+    comes_near,
     deviance,
     is_better,
     is_identifiable,
@@ -77,9 +79,11 @@ def fit_structures(
     every: Sequence[Rebuilt],
     logs: Logs,
     known: Mapping[str, float] | None = None,
+    rival: Search | None = None,
 ) -> Fitted:
     """Fit a platform and `every` structure one step away from it: a few iterations each from their
-    starts, the better half to the end of whole runs (see `_finished`).
+    starts, the better half to the end of whole runs (see `_finished`). Where the best of them does
+    not come near what was found by a `rival`, it alone is.
 
     They are started beside the parameters `known` from a fit that leaves noise alone, else beside
     those of the platform's: where a delay makes up for a lag, the former are right, the latter not.
@@ -100,19 +104,24 @@ def fit_structures(
     logs.progress(f"fitting the better {len(better)} of them to their end")
     tried = {key for b in begun for key in b.keys}
     failed = {r.keys[0]: b for r, b in results if isinstance(b, str) and r.keys[0] not in tried}
-    finished = _finished(begun, better, declared)
+    finished = _finished(begun, better, declared, rival)
     return Fitted(declared, _from_those_that_contain(finished, better, declared), better, failed)
 
 
 def _finished(
-    begun: Sequence[FittedStructure], better: Sequence[int], declared: FittedStructure
+    begun: Sequence[FittedStructure],
+    better: Sequence[int],
+    declared: FittedStructure,
+    rival: Search | None = None,
 ) -> tuple[FittedStructure, ...]:
     """The structures, those in `better`, the best first, fitted to their end; where the best leaves
-    noise alone, of the others those that come near it.
+    noise alone, of the others those that come near it, and none where it is far from a `rival`.
     """
     every, others = _each(FittedStructure.finished, begun, better[:1]), better[1:]
     best = every[better[0]] if better else None
-    if best is not None and best.is_noise_alone:
+    if best is None or (rival and not comes_near(best, rival.problem, rival.chosen, declared)):
+        return every
+    if best.is_noise_alone:
         every = _each(FittedStructure.further, every, others)
         others = [k for k in others if is_near(every[k], best, declared)]
     return _each(FittedStructure.finished, every, others)

@@ -3,6 +3,7 @@ leaves noise alone.
 """
 
 from dataclasses import dataclass, replace
+from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
@@ -27,9 +28,14 @@ class Begun:
 
 
 def finished(
-    errors: list[float], better: tuple[int, ...], monkeypatch: pytest.MonkeyPatch
+    errors: list[float],
+    better: tuple[int, ...],
+    monkeypatch: pytest.MonkeyPatch,
+    rival: float | None = None,
 ) -> list[tuple[int, int]]:
-    """How often each structure was led further and to its end; further, one halves its error."""
+    """How often each structure was led further and to its end; further, one halves its error. A
+    `rival` without a structure has that error.
+    """
 
     def further(one: Begun) -> Begun:
         return replace(one, further=one.further + 1, error=0.5 * one.error)
@@ -42,9 +48,15 @@ def finished(
 
     monkeypatch.setattr(FittedStructure, "further", further)
     monkeypatch.setattr(FittedStructure, "finished", to_its_end)
+
+    def comes_near(one: Begun, problem: Any, other: float, declared: Any) -> bool:
+        return one.error <= 2.0 * other
+
     monkeypatch.setattr(structure_fits, "is_near", is_near)
+    monkeypatch.setattr(structure_fits, "comes_near", comes_near)
     every = cast(Any, [Begun(e) for e in errors])
-    found = cast(Any, structure_fits._finished(every, better, every[0]))
+    search = None if rival is None else cast(Any, SimpleNamespace(problem=None, chosen=rival))
+    found = cast(Any, structure_fits._finished(every, better, every[0], search))
     return [(one.further, one.ends) for one in found]
 
 
@@ -55,6 +67,15 @@ def test_beside_noise_alone_those_that_come_near(monkeypatch: pytest.MonkeyPatch
 
 def test_beside_more_than_noise_all_of_the_better_half(monkeypatch: pytest.MonkeyPatch) -> None:
     found = finished([9.0, 1.5, 3.0, 7.0], (1, 2, 3), monkeypatch)
+    assert found == [(0, 0), (0, 1), (0, 1), (0, 1)]
+
+
+def test_none_but_the_best_where_that_is_far_from_what_terms_explain(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    found = finished([9.0, 5.0, 6.0, 7.0], (1, 2, 3), monkeypatch, rival=2.0)
+    assert found == [(0, 0), (0, 1), (0, 0), (0, 0)]
+    found = finished([9.0, 3.0, 6.0, 7.0], (1, 2, 3), monkeypatch, rival=2.0)
     assert found == [(0, 0), (0, 1), (0, 1), (0, 1)]
 
 

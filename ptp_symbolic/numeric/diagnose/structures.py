@@ -248,9 +248,18 @@ def is_near(one: FittedStructure, best: FittedStructure, declared: FittedStructu
     """Whether a structure fits nearly as well as the best one (see `fitted_model.is_near`), in the
     windows of the declared one.
     """
+    return comes_near(one, best.problem, best.trial, declared)
+
+
+def comes_near(
+    one: FittedStructure, problem: SearchProblem, trial: FittedModel, declared: FittedStructure
+) -> bool:
+    """Whether a structure fits nearly as well as a `trial` of another problem; see `is_near`."""
     pattern = declared.trial.fit.runs
-    trial, other = (on_runs_of(s.problem, s.trial, pattern) for s in (one, best))
-    return fitted_model.is_near(trial, [other])
+    own, other = (
+        on_runs_of(p, t, pattern) for p, t in ((one.problem, one.trial), (problem, trial))
+    )
+    return fitted_model.is_near(own, [other])
 
 
 def alternatives(
