@@ -32,7 +32,7 @@ class Rebuilt:
     `added` are the effects that it has more, the one it is named after first; `removed` those whose
     place they take. `starts` are values of the parameters that came with them, from which a fit
     begins. Every effect `provides` mechanisms: where that of another structure has all of these,
-    it contains this one. A `note` says what else is other than declared.
+    it contains this one. `notes` say of added effects what was moved with them.
     """
 
     platform: Platform
@@ -40,7 +40,7 @@ class Rebuilt:
     removed: tuple[EffectDeclaration, ...]
     starts: tuple[Mapping[str, float], ...]
     provides: frozenset[str]
-    note: str = ""
+    notes: tuple[str, ...] = ()
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -49,7 +49,7 @@ class Rebuilt:
 
 
 BEHIND = "joint"  # the site of friction behind a shaft or a gap
-BEFORE = " before friction"  # ends the name of the mechanism of such a shaft or gap
+BEFORE = " before friction"  # ends the name of a shaft or gap with friction at the joint
 USUAL_INERTIA = 0.2  # kg m^2; of an axis that the starts of the effects suit
 SPAN = 30.0  # 1; so many times lighter or heavier, they suit still
 
@@ -106,6 +106,11 @@ def structures(platform: Platform) -> tuple[tuple[Rebuilt, ...], dict[str, str]]
     return tuple(found), {key: why for key, why in untried.items() if key not in tried}
 
 
+def _notes(rebuilt: Rebuilt) -> tuple[str, ...]:
+    """A note, or none, for each of the added effects."""
+    return (*rebuilt.notes, *("" for _ in rebuilt.added[len(rebuilt.notes) :]))
+
+
 def on_any_side(provides: frozenset[str]) -> frozenset[str]:
     """Mechanisms without the side of them on which friction sits."""
     return frozenset(one.removesuffix(BEFORE) for one in provides)
@@ -121,8 +126,8 @@ def pairs(first: Rebuilt) -> tuple[Rebuilt, ...]:
             second,
             added=(*first.added, *second.added),
             removed=(*first.removed, *second.removed),
-            provides=first.provides | second.provides,
-            note=first.note or second.note,
+            provides=_mechanisms(second.platform, own | {(e.effect, e.axis) for e in second.added}),
+            notes=(*_notes(first), *_notes(second)),
         )
         for second in structures(first.platform)[0]
         if not own & {(e.effect, e.axis) for e in second.removed}
@@ -234,7 +239,7 @@ def _with_friction_behind(
         return ()
     moved = tuple(replace(e, site=BEHIND) if e in movable else e for e in platform.effects)
     rebuilt = _rebuilt(replace(platform, effects=moved), effect, axis)
-    return (replace(rebuilt, note=f"friction at the {BEHIND}"),)
+    return (replace(rebuilt, notes=(f"friction at the {BEHIND}",)),)
 
 
 def _within(declared: ParameterDeclaration, own: Parameter) -> ParameterDeclaration:
@@ -253,7 +258,7 @@ def _within(declared: ParameterDeclaration, own: Parameter) -> ParameterDeclarat
 
 def _mechanisms(platform: Platform, added: set[tuple[str, str | None]]) -> frozenset[str]:
     """What the effects `added` to `platform` bring, by kind and axis: shafts, gaps, what they
-    change. A shaft before the friction contains none behind it.
+    change. A shaft with friction at the joint does not contain one with friction at the gear.
     """
     before = {e.axis: BEFORE for e in platform.effects if e.site == BEHIND}
     found: set[str] = set()

@@ -12,6 +12,7 @@ import numpy as np
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import variants
 from ptp_symbolic.models.structures import Rebuilt, pairs, structures, to_scale
+from ptp_symbolic.models.variants import candidate_effects
 from ptp_symbolic.numeric.diagnose.fitted_model import (
     FittedModel,
     SearchProblem,
@@ -33,6 +34,7 @@ from ptp_symbolic.numeric.diagnose.stepwise import Search
 from ptp_symbolic.numeric.diagnose.structures import (
     FittedStructure,
     alternatives,
+    effects_of,
     gain_over,
     is_better,
     named_effects,
@@ -52,7 +54,7 @@ from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.numeric.identify.windows import parted_like
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.workflows.preparation import effect_keys, model_of, problem_for, with_effects
-from ptp_symbolic.workflows.structure_fits import FOLLOWED, Fitted, Logs, fit_structures
+from ptp_symbolic.workflows.structure_fits import Fitted, Logs, fit_structures
 
 LEAST_SHARE = 0.1  # of the allowance, for the brief search beside a structure that fits well
 
@@ -146,7 +148,7 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
         is_cut_short = is_stopped or terms.found.is_cut_short
         return Choice(terms.decided, terms.decided, (), untried, is_cut_short)
     known = terms.found.chosen.values if terms.is_noise_alone else None
-    beside = None if terms.is_noise_alone else _with_found(platform, terms, terms.found.declared)
+    beside = None if terms.is_noise_alone else _with_found(platform, terms)
     fitted = fit_structures(platform, every, logs, known, terms.found if beside else None)
     if not terms.is_noise_alone and not fitted.quiet and not logs.allowance.is_over:
         again = _fitted_beside(platform, beside, fitted, logs) if beside else None
@@ -154,7 +156,7 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
         if not fitted.quiet and fitted.order and not logs.allowance.is_over:
             fitted, paired = _paired(fitted, every, logs)
             platforms |= _platforms(paired)
-    followed = fitted.quiet or ([] if terms.is_noise_alone else fitted.order[:FOLLOWED])
+    followed = fitted.quiet or ([] if terms.is_noise_alone else fitted.followed)
     outcomes = [searched(s, brief=True) for s in followed]
     if not logs.allowance.is_over:
         outcomes = [_from_what_contains_it(one, outcomes, searched) for one in outcomes]
@@ -191,22 +193,24 @@ def _platforms(every: Sequence[Rebuilt]) -> dict[tuple[tuple[str, ...], frozense
     return {(rebuilt.keys, rebuilt.provides): rebuilt.platform for rebuilt in every}
 
 
-def _with_found(platform: Platform, searched: Searched, before: FittedModel) -> Platform | None:
-    """The platform with the effects that a search found, where these surely halve the squared error
-    of what was there `before`; None where they do not. A delay is not among them, for it makes up
-    for the lag of a structure.
+def _with_found(platform: Platform, one: Searched) -> Platform | None:
+    """The platform with the effects that a search found and that can be there without its
+    structure, where these surely halve the squared error; None where they do not. A delay is not
+    among them, for it makes up for the lag of a structure.
     """
-    trial = searched.found.chosen
+    trial, own = one.found.chosen, {(e.effect, e.axis) for e in candidate_effects(platform)}
     late = {trial.fit.model.parameter_names[k] for k in trial.fit.model.input_delays if k >= 0}
-    kept = tuple(c for c in trial.candidates if not late & set(c.parameters))
+    kept = tuple(
+        c
+        for c in trial.candidates
+        if c.is_declared_value or ((c.id, c.axis) in own and not late & set(c.parameters))
+    )
     if all(c.is_declared_value for c in kept):
         return None
-    without = on_runs_of(searched.found.problem, before, trial.fit.runs)
-    return (
-        with_effects(platform, replace(trial, candidates=kept))
-        if gain(trial, without).is_most
-        else None
-    )
+    without = on_runs_of(one.found.problem, one.found.declared, trial.fit.runs)
+    if not gain(trial, without).is_most:
+        return None
+    return with_effects(platform, replace(trial, candidates=kept))
 
 
 def _fitted_beside(
@@ -215,11 +219,11 @@ def _fitted_beside(
     """The structures fitted again `beside` effects that were found; None where none predicts better
     than these alone.
     """
-    own = {s.keys for s in fitted.every}
-    every = [r for r in _to_scale(structures(beside)[0], platform) if r.keys in own]
-    found = fit_structures(beside, every, logs)
+    own = {(s.keys, s.provides) for s in fitted.every}
+    every = _to_scale(structures(beside)[0], platform)
+    found = fit_structures(beside, [r for r in every if (r.keys, r.provides) in own], logs)
     found = found if found.quiet else found.over_windows_too(logs)
-    return found if found.order else None
+    return replace(found, failed={**fitted.failed, **found.failed}) if found.order else None
 
 
 def _followed_on(
@@ -235,20 +239,16 @@ def _followed_on(
     """
     if not outcomes or any(s.is_noise_alone for s in outcomes) or logs.allowance.is_over:
         return fitted, outcomes
-    best = _best_fit(outcomes)
-    beside = _with_found(platform, best, best.found.declared)
+    beside = _with_found(platform, _best_fit(outcomes))
     known = {effect.key for effect in fitted.declared.problem.model.effects}
     is_new = beside is not None and not known.issuperset(effect_keys(beside))
     found = _fitted_beside(platform, beside, fitted, logs) if beside and is_new else None
-    if found is None:
+    there = {(s.keys, s.provides): s for s in found.every} if found else {}
+    own = [(s.structure.keys, s.structure.provides) for s in outcomes if s.structure]
+    if found is None or not all(key in there for key in own):
         return fitted, outcomes
-    there = {(s.keys, s.provides): s for s in found.every}
-    moved = [
-        replace(s, structure=there.get((s.structure.keys, s.structure.provides), s.structure))
-        for s in outcomes
-        if s.structure is not None
-    ]
-    first = found.order[0]
+    moved = [replace(s, structure=there[key]) for s, key in zip(outcomes, own, strict=True)]
+    first = (found.quiet or found.order)[0]
     if all(s.structure is not first for s in moved) and not logs.allowance.is_over:
         moved.append(searched(first, brief=True))
     return found, moved
@@ -496,9 +496,13 @@ def _with_structure(
     """
     structure, verdict = outcome.structure, outcome.verdict
     assert structure is not None
-    own = named_effects(structure, verdict.final)
-    final = replace(verdict.final, candidates=(*own, *verdict.final.candidates))
     equals = _alike(outcome, fitted)
+    if any(s.keys == structure.keys for s in equals):  # no log tells where the friction sits
+        plain = replace(structure, added=effects_of(structure.problem, structure.keys))
+    else:
+        plain = structure
+    own = named_effects(plain, verdict.final)
+    final = replace(verdict.final, candidates=(*own, *verdict.final.candidates))
     alike = [Alternative(s.trial, gain_over(structure, s)) for s in equals]
     names = {key for s in equals for key in s.keys if key not in structure.keys}
     group = {c.key: tuple(sorted(names)) for c in own}

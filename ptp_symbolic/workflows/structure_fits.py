@@ -64,6 +64,16 @@ class Fitted:
         told = [s for s in quiet if is_identifiable(s.added[0], s.trial)]
         return (told or quiet)[:1]
 
+    @cached_property
+    def followed(self) -> list[FittedStructure]:
+        """Those that go on into the search for terms where none leaves noise alone: the best, of
+        one with friction on either side the better side.
+        """
+        distinct: dict[tuple[tuple[str, ...], frozenset[str]], FittedStructure] = {}
+        for one in self.order:
+            distinct.setdefault((one.keys, on_any_side(one.provides)), one)
+        return list(distinct.values())[:FOLLOWED]
+
     def over_windows_too(self, logs: Logs) -> "Fitted":
         """The declared structure and the better half fitted over windows."""
         logs.progress("fitting structures over windows")
@@ -83,7 +93,7 @@ def fit_structures(
 ) -> Fitted:
     """Fit a platform and `every` structure one step away from it: a few iterations each from their
     starts, the better half to the end of whole runs (see `_finished`). Where the best of them does
-    not come near what was found by a `rival`, it alone is.
+    not come near what a `rival` search found, only that best one is fitted to its end.
 
     They are started beside the parameters `known` from a fit that leaves noise alone, else beside
     those of the platform's: where a delay makes up for a lag, the former are right, the latter not.
@@ -115,7 +125,8 @@ def _finished(
     rival: Search | None = None,
 ) -> tuple[FittedStructure, ...]:
     """The structures, those in `better`, the best first, fitted to their end; where the best leaves
-    noise alone, of the others those that come near it, and none where it is far from a `rival`.
+    noise alone, of the others those that come near it, and none where the best is far from a
+    `rival`.
     """
     every, others = _each(FittedStructure.finished, begun, better[:1]), better[1:]
     best = every[better[0]] if better else None
@@ -144,12 +155,12 @@ def _begun(
     if rebuilt is None:
         return begin_structure((), frozenset(), problem, (), known)
     keys, provides, starts = rebuilt.keys, rebuilt.provides, rebuilt.starts
-    return begin_structure(keys, provides, problem, starts, known, rebuilt.note)
+    return begin_structure(keys, provides, problem, starts, known, rebuilt.notes)
 
 
 def _better_half(begun: Sequence[FittedStructure], declared: FittedStructure) -> tuple[int, ...]:
-    """Which structures fit better than half of them, at least as many as are followed; of one with
-    friction on either side that side alone which is far ahead.
+    """Which structures fit better than half of them, at least as many as are followed; a side of
+    friction that is far behind the other is left out.
     """
     cost = [deviance(b, declared) for b in begun]
     ahead: dict[tuple[tuple[str, ...], frozenset[str]], FittedStructure] = {}

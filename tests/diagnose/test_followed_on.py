@@ -2,12 +2,13 @@
 all are compared again beside the effects that were found in the best of them.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
 
+from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows import structure_choice
 from ptp_symbolic.workflows.structure_choice import Searched
 
@@ -27,6 +28,7 @@ class Fits:
 
     order: list[Structure]
     beside: tuple[str, ...] = ()
+    quiet: tuple[Structure, ...] = ()
 
     @property
     def every(self) -> list[Structure]:
@@ -80,7 +82,7 @@ class Scene:
 
 
 BEFORE = Fits([Structure((LAG,)), Structure((SHAFT,)), Structure((GAP,))])
-AFTER = Fits([Structure((SHAFT,), fit="beside"), Structure((LAG,), fit="beside")])
+AFTER = Fits([Structure((key,), fit="beside") for key in (SHAFT, LAG, GAP)])
 
 
 def test_the_best_beside_what_was_found_is_followed_too(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -90,8 +92,24 @@ def test_the_best_beside_what_was_found_is_followed_too(monkeypatch: pytest.Monk
     assert scene.fitted_beside == ["direction_dependent_friction@pan"]
     assert scene.searched == [(SHAFT,)]
     assert [cast(Any, s.structure).keys for s in outcomes] == [(LAG,), (GAP,), (SHAFT,)]
-    assert outcomes[0].structure is cast(Any, AFTER.order[1]), "judged as it fits beside it"
-    assert outcomes[1].structure is cast(Any, BEFORE.order[2]), "it was not fitted again"
+    assert [s.structure for s in outcomes[:2]] == cast(Any, AFTER.order[1:]), "as they fit there"
+
+
+def test_one_that_leaves_noise_alone_beside_them_comes_first(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    scene = Scene(monkeypatch)
+    after = Fits(AFTER.order, quiet=(AFTER.order[2],))
+    scene.run(BEFORE, [BEFORE.order[0]], after)
+    assert scene.searched == [(GAP,)]
+
+
+def test_where_one_that_was_followed_cannot_be_fitted_again_all_stays(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    scene = Scene(monkeypatch)
+    fits, outcomes = scene.run(BEFORE, BEFORE.order, Fits(AFTER.order[:2]))
+    assert fits is BEFORE and [s.structure for s in outcomes] == cast(Any, BEFORE.order)
 
 
 def test_one_that_was_followed_is_not_searched_twice(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -118,3 +136,40 @@ def test_structures_that_were_fitted_beside_it_stay(monkeypatch: pytest.MonkeyPa
     known = Fits(BEFORE.order, beside=("direction_dependent_friction@pan",))
     fits, _ = scene.run(known, known.order[:2], AFTER)
     assert fits is known and not scene.fitted_beside
+
+
+def test_what_needs_the_structure_is_no_effect_of_the_platform_without_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A gap is found beside a shaft; a rigid gear cannot have it."""
+
+    def candidate(effect: str, parameter: str) -> Any:
+        return SimpleNamespace(
+            id=effect, axis="pan", is_declared_value=False, parameters=(parameter,)
+        )
+
+    gap = candidate("backlash", "gap_pan")
+    drag = candidate("quadratic_drag", "c_drag_pan")
+    late = candidate("input_delay", "t_delay_pan")
+    model = SimpleNamespace(parameter_names=("t_delay_pan",), input_delays=(0,))
+
+    @dataclass
+    class Trial:
+        candidates: tuple[Any, ...]
+        fit: Any
+
+    def found(*candidates: Any) -> Searched:
+        trial = Trial(candidates, SimpleNamespace(model=model, runs=()))
+        search = SimpleNamespace(chosen=trial, declared=None, problem=None)
+        return Searched(cast(Any, None), None, cast(Any, None), cast(Any, search))
+
+    kept = ("rigid_bodies", "dc_motor", "csvs_friction")
+    declared = read_platform("thesis-pan-drive")
+    own = tuple(e for e in declared.effects if e.effect in kept)
+    rigid = replace(declared, effects=own, parameters=(), signals=())
+    patch = monkeypatch.setattr
+    patch(structure_choice, "on_runs_of", lambda *given: None)
+    patch(structure_choice, "gain", lambda *given: SimpleNamespace(is_most=True))
+    patch(structure_choice, "with_effects", lambda platform, trial: trial.candidates)
+    assert structure_choice._with_found(rigid, found(gap, drag, late)) == (drag,)
+    assert structure_choice._with_found(rigid, found(gap, late)) is None

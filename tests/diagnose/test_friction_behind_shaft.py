@@ -104,7 +104,7 @@ def shafts(tmp_path_factory: pytest.TempPathFactory) -> Iterator[list[FittedStru
                 problem = problem_for(
                     one.platform, model, logs, logs, (), executor, lambda text: None
                 )
-                begun = begin_structure(one.keys, one.provides, problem, one.starts, {}, one.note)
+                begun = begin_structure(one.keys, one.provides, problem, one.starts, {}, one.notes)
                 found.append(begun.finished())
         yield found
 

@@ -131,11 +131,11 @@ def begin_structure(
     problem: SearchProblem,
     starts: Sequence[Mapping[str, float]],
     known: Mapping[str, float],
-    note: str = "",
+    notes: Sequence[str] = (),
 ) -> FittedStructure:
     """The structure of `problem`, begun from `starts` (of the parameters that the effects named in
     `keys` bring), each beside the declared start and beside `known` values of a fit of the declared
-    structure. A `note` says what else is other than declared.
+    structure. `notes` say of added effects what was moved with them.
     """
     proposals = propose(problem)
     own = {f.name: f for f in problem.free}
@@ -152,9 +152,11 @@ def begin_structure(
     begun = [fitted(problem, (), end.values, None, executor=run) for end in ends]
     trial = (halving(problem, begun, 1) or begun[:1])[0]
     proposals = replace(proposals, start=trial.values)
-    added = effects_of(problem, keys)
-    if note:
-        added = (replace(added[0], title=f"{added[0].title}, {note}"), *added[1:])
+    effects = effects_of(problem, keys)
+    added = tuple(
+        replace(effect, title=f"{effect.title}, {note}") if note else effect
+        for effect, note in zip(effects, (*notes, *[""] * len(effects)), strict=False)
+    )
     return FittedStructure(added, provides, problem, trial, proposals)
 
 
@@ -199,8 +201,8 @@ def gain_over(one: FittedStructure, other: FittedStructure) -> Gain:
 
 def by_fit(declared: FittedStructure, found: Sequence[FittedStructure]) -> list[FittedStructure]:
     """The structures that predict a material share better than the declared one, the best fit
-    first; but of those that come near that (see `is_near`) one with fewer parameters comes before
-    another that it predicts as well as.
+    first; but of those that come near the best fit of all (see `is_near`) one with fewer
+    parameters comes before another that it predicts as well as.
     """
     whole = [s for s in found if not s.trial.fit.failed]
     gains = side_by_side(lambda s: gain_over(s, declared), whole)

@@ -326,7 +326,8 @@ def carried_start(model: Model, run: Run, p: FloatArray, end: FloatArray) -> Flo
         elif unknown.name.startswith(("omega_gear_", "theta_gear_")):
             gear = states.index(unknown.name)
             joint = states.index(unknown.name.replace("_gear_", "_", 1))
-            z[index] = (end[gear] - end[joint]) - (run.start[gear] - run.start[joint])
+            ahead = (end[gear] - end[joint]) - (run.start[gear] - run.start[joint])
+            z[index] = min(max(float(ahead), unknown.lower), unknown.upper)
         else:
             state = states.index(unknown.name)
             moved = float(end[state] - run.start[state])

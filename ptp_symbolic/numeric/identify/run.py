@@ -241,7 +241,8 @@ def with_start(
     between standstill and twice the rate of the joint. In a window (`around` it is the rest of a
     log), and of one that is `underway` after a gap in the log, the shaft may be wound up at rest
     too, and the joint may move or turn back within its noise. A shaft without a gap may be twisted
-    by some share of the range of its joint: by friction behind it, or a gear out of true.
+    by some share of the range of its joint, where its angle is measured: by friction behind it, or
+    a gear out of true.
     """
     wound = underway or around is not None
     states = list(model.state_names)

@@ -225,7 +225,10 @@ def multiplies_errors(model: Model, run: Run, p: FloatArray, z: FloatArray) -> b
     """
     none = np.zeros(0, dtype=np.int64)
     e = evaluate(model, run, p, z, none, True, Tolerance())
-    angles = [i for i, u in enumerate(run.unknowns) if u.name.startswith("theta")]
+    shown = set(run.signals)
+    angles = [
+        i for i, u in enumerate(run.unknowns) if u.name.startswith("theta_") and u.name in shown
+    ]
     if e.failed:
         return True
     by_angle = e.by_start[:, angles] / np.tile(run.weight, len(run.time))[:, None]
