@@ -240,9 +240,8 @@ def with_start(
     ahead and has wound up the shaft, nobody knows by how much; or it crosses its gap, at anything
     between standstill and twice the rate of the joint. In a window (`around` it is the rest of a
     log), and of one that is `underway` after a gap in the log, the shaft may be wound up at rest
-    too, and the joint may move or turn back within its noise. A shaft without a gap may be twisted
-    by some share of the range of its joint, where its angle is measured: by friction behind it, or
-    a gear out of true.
+    too, and the joint may move or turn back within its noise. A whole run may begin with a shaft
+    twisted (see `_twists`); every window with one would follow anything.
     """
     wound = underway or around is not None
     states = list(model.state_names)
@@ -305,18 +304,28 @@ def with_start(
                 guess=float(np.sign(rate)),
             )
         )
-    apart = {states[gear] for gear, _ in model.module.CONTACT_ANGLES}
-    for column, signal in enumerate(run.signals):
-        gear_angle = signal.replace("theta_", "theta_gear_", 1)
-        if signal.startswith("theta_") and gear_angle in states and gear_angle not in apart:
-            range_ = float(np.ptp((run if around is None else around).measured[:, column]))
-            twist = max(LITTLE * range_, 10.0 / float(run.weight[column]))
-            unknowns.append(_unknown(states, gear_angle, [gear_angle], 10.0 * twist, twist))
+    if around is None:
+        unknowns += _twists(model, run)
     if around is not None:
         for state, signal in _memories_of_rest(model):
             if signal in run.signals:
                 start[state] = _rest_so_far(run, run.signals.index(signal), around)
     return replace(run, start=start, unknowns=tuple(unknowns))
+
+
+def _twists(model: Model, run: Run) -> list[StartUnknown]:
+    """The angles of gears ahead of joints that are measured, behind shafts without a gap: some share
+    of the range of the joint, for friction behind a shaft, or a gear out of true, holds it twisted.
+    """
+    states, found = list(model.state_names), []
+    apart = {states[gear] for gear, _ in model.module.CONTACT_ANGLES}
+    for column, signal in enumerate(run.signals):
+        gear = signal.replace("theta_", "theta_gear_", 1)
+        if signal.startswith("theta_") and gear in states and gear not in apart:
+            share = LITTLE * float(np.ptp(run.measured[:, column]))
+            twist = max(share, 10.0 / float(run.weight[column]))
+            found.append(_unknown(states, gear, [gear], 10.0 * twist, twist))
+    return found
 
 
 def _memories_of_rest(model: Model) -> list[tuple[int, str]]:
