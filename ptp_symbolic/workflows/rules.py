@@ -301,10 +301,10 @@ RULES = (
     ),
     Rule(
         "structure identifiable",
-        "Some parameter of an added structure is identifiable.",
+        "A parameter of an added structure is identifiable; beside noise alone, off its bounds.",
         _in("structures", "is_there"),
         _always(True),
-        "safety: a structure of which no parameter is known",
+        "set 353 (a wrong name, a harmonic drive for a gap)",
     ),
     Rule(
         "simpler structures",

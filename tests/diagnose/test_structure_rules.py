@@ -29,4 +29,5 @@ def test_a_stiffness_that_the_logs_bound_is_there_though_they_do_not_tell_it(
     fit = finished(residuals, slopes, None, (inertia, stiffness), values)
     trial = FittedModel((), fit)
     assert is_identifiable(effect, trial) is identifiable
-    assert is_there(effect, trial) is there
+    assert is_there(effect, trial, quiet=True) is there
+    assert is_there(effect, trial, quiet=False) is identifiable

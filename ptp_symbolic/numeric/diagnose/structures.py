@@ -297,9 +297,10 @@ def is_identifiable(effect: Candidate, trial: FittedModel) -> bool:
     return any(e.identified and not e.at_bound for e in own)
 
 
-def is_there(effect: Candidate, trial: FittedModel) -> bool:
-    """Whether the logs tell a parameter of an effect that a trial has, or keep one off both of its
-    bounds: stiffness and inertia that are known only together are those of a shaft all the same.
+def is_there(effect: Candidate, trial: FittedModel, quiet: bool) -> bool:
+    """Whether the logs tell a parameter of an effect that a trial has, or, where that is `quiet`
+    (noise alone is left), keep one off both of its bounds: stiffness and inertia that are known
+    only together are those of a shaft all the same.
     """
     bounds = {f.name: (f.lower, f.upper) for f in trial.fit.free}
     kept_off = (
@@ -307,7 +308,7 @@ def is_there(effect: Candidate, trial: FittedModel) -> bool:
         for e in estimates(trial.fit)
         if e.name in effect.parameters
     )
-    return is_identifiable(effect, trial) or any(kept_off)
+    return is_identifiable(effect, trial) or (quiet and any(kept_off))
 
 
 def named_effects(structure: FittedStructure, trial: FittedModel) -> tuple[Candidate, ...]:
@@ -338,7 +339,7 @@ def why_rejected(
     if not quiet and not earned.is_most:
         return earned, f"{earned.in_words}, too little while the residual exceeds the noise"
     first = structure.added[0]
-    if not is_there(first, trial):
+    if not is_there(first, trial, quiet):
         return earned, f"no parameter of {first.key} is identifiable from these logs"
     if not is_moved_by_inputs(replace(problem, train=trial.fit.runs), trial):
         return earned, "with it the simulated motion no longer depends on the inputs"

@@ -314,8 +314,8 @@ def with_start(
 
 
 def _twists(model: Model, run: Run) -> list[StartUnknown]:
-    """The angles of gears ahead of joints that are measured, behind shafts without a gap: some share
-    of the range of the joint, for friction behind a shaft, or a gear out of true, holds it twisted.
+    """The angles of gears ahead of joints that are measured, before shafts without a gap: by some
+    share of the range of the joint, for friction behind a shaft, or a gear out of true, twists it.
     """
     states, found = list(model.state_names), []
     apart = {states[gear] for gear, _ in model.module.CONTACT_ANGLES}
