@@ -24,6 +24,7 @@ from ptp_symbolic.numeric.identify.constants import (
     LEAST_START,
     LITTLE,
     ROUNDING,
+    SAME,
     START_SPAN,
 )
 from ptp_symbolic.numeric.identify.evidence import Work
@@ -241,7 +242,7 @@ def with_start(
     between standstill and twice the rate of the joint. In a window (`around` it is the rest of a
     log), and of one that is `underway` after a gap in the log, the shaft may be wound up at rest
     too, and the joint may move or turn back within its noise. A whole run may begin with a shaft
-    twisted (see `_twists`); every window with one would follow anything.
+    that friction holds twisted (see `_twists`).
     """
     wound = underway or around is not None
     states = list(model.state_names)
@@ -314,17 +315,19 @@ def with_start(
 
 
 def _twists(model: Model, run: Run) -> list[StartUnknown]:
-    """The angles of gears ahead of joints that are measured, before shafts without a gap: by some
-    share of the range of the joint, for friction behind a shaft, or a gear out of true, twists it.
+    """The angles of gears ahead of joints that are measured, where dry friction behind a shaft
+    without a gap can hold it twisted: by a small share of the range of the joint. Free to be more,
+    it takes up what else is missing, and leads a fit astray.
     """
     states, found = list(model.state_names), []
     apart = {states[gear] for gear, _ in model.module.CONTACT_ANGLES}
+    held = {states[rate].replace("omega_", "theta_gear_", 1) for rate in model.friction_rates}
     for column, signal in enumerate(run.signals):
         gear = signal.replace("theta_", "theta_gear_", 1)
-        if signal.startswith("theta_") and gear in states and gear not in apart:
-            share = LITTLE * float(np.ptp(run.measured[:, column]))
+        if signal.startswith("theta_") and gear in states and gear in held - apart:
+            share = SAME * float(np.ptp(run.measured[:, column]))
             twist = max(share, 10.0 / float(run.weight[column]))
-            found.append(_unknown(states, gear, [gear], 10.0 * twist, twist))
+            found.append(_unknown(states, gear, [gear], 100.0 * twist, twist))
     return found
 
 
