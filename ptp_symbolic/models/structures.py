@@ -32,7 +32,8 @@ class Rebuilt:
     `added` are the effects that it has more, the one it is named after first; `removed` those whose
     place they take. `starts` are values of the parameters that came with them, from which a fit
     begins. Every effect `provides` mechanisms: where that of another structure has all of these,
-    it contains this one. `notes` say of added effects what was moved with them.
+    it contains this one. `notes` say of each
+    added effect what was moved with it, or nothing.
     """
 
     platform: Platform
@@ -40,7 +41,7 @@ class Rebuilt:
     removed: tuple[EffectDeclaration, ...]
     starts: tuple[Mapping[str, float], ...]
     provides: frozenset[str]
-    notes: tuple[str, ...] = ()
+    notes: tuple[str, ...]
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -106,11 +107,6 @@ def structures(platform: Platform) -> tuple[tuple[Rebuilt, ...], dict[str, str]]
     return tuple(found), {key: why for key, why in untried.items() if key not in tried}
 
 
-def _notes(rebuilt: Rebuilt) -> tuple[str, ...]:
-    """A note, or none, for each of the added effects."""
-    return (*rebuilt.notes, *("" for _ in rebuilt.added[len(rebuilt.notes) :]))
-
-
 def on_any_side(provides: frozenset[str]) -> frozenset[str]:
     """Mechanisms without the side of them on which friction sits."""
     return frozenset(one.removesuffix(BEFORE) for one in provides)
@@ -127,7 +123,7 @@ def pairs(first: Rebuilt) -> tuple[Rebuilt, ...]:
             added=(*first.added, *second.added),
             removed=(*first.removed, *second.removed),
             provides=_mechanisms(second.platform, own | {(e.effect, e.axis) for e in second.added}),
-            notes=(*_notes(first), *_notes(second)),
+            notes=(*first.notes, *second.notes),
         )
         for second in structures(first.platform)[0]
         if not own & {(e.effect, e.axis) for e in second.removed}
@@ -220,6 +216,7 @@ def _rebuilt(platform: Platform, effect: Effect, axis: str | None) -> Rebuilt:
         removed,
         tuple(dict(zip(names, point, strict=True)) for point in itertools.product(*grid)),
         _mechanisms(rebuilt, new),
+        ("",) * len(added),
     )
 
 
@@ -239,7 +236,7 @@ def _with_friction_behind(
         return ()
     moved = tuple(replace(e, site=BEHIND) if e in movable else e for e in platform.effects)
     rebuilt = _rebuilt(replace(platform, effects=moved), effect, axis)
-    return (replace(rebuilt, notes=(f"friction at the {BEHIND}",)),)
+    return (replace(rebuilt, notes=(f"friction at the {BEHIND}", *rebuilt.notes[1:])),)
 
 
 def _within(declared: ParameterDeclaration, own: Parameter) -> ParameterDeclaration:
