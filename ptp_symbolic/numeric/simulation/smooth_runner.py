@@ -62,7 +62,6 @@ SAFETY, LEAST, MOST = 0.9, 0.2, 5.0  # factors from one step length to the next
 PROBE = 2.0 / 3.0  # of a step: where the slope of the interpolant is off most
 OF_DEFECT = 0.2  # error of the interpolant over that of its slope between its roots nearby
 INSIDE = 5.0  # tolerances: errors there do not add up
-EXPONENT = -1.0 / 8.0
 SMALLEST_ERROR, LARGEST_ERROR = (
     1e-6,
     1e10,
@@ -112,7 +111,7 @@ def add_slopes(weights, count, h, work, start, out):
         out[a + 3] = start[a + 3] + h * w3
 
 
-@kernel
+@merged
 def fill_slopes(stages, motion, t, h):
     """Evaluate the slopes of `stages`, the first and the one after the last, of the step of h s
     from t: rows of the work [27, w].
@@ -188,7 +187,7 @@ def plan(error, h, clock):
     if error < SMALLEST_ERROR:
         factor = MOST
     elif error < LARGEST_ERROR:
-        factor = min(MOST, max(LEAST, SAFETY * error**EXPONENT))
+        factor = min(MOST, max(LEAST, SAFETY / np.sqrt(np.sqrt(np.sqrt(error)))))
     if not error <= 1.0:
         clock[LENGTH] = h * min(factor, SAFETY)
         return False
