@@ -50,6 +50,7 @@ class Rebuilt:
 
 
 BEHIND = "joint"  # the site of friction behind a shaft or a gap
+SPLITTING = ("shaft", "play")  # mechanisms that leave friction at the gear, or behind them
 BEFORE = " before friction"  # ends the name of a shaft or gap with friction at the joint
 USUAL_INERTIA = 0.2  # kg m^2; of an axis that the starts of the effects suit
 SPAN = 30.0  # 1; so many times lighter or heavier, they suit still
@@ -103,6 +104,7 @@ def structures(platform: Platform) -> tuple[tuple[Rebuilt, ...], dict[str, str]]
             why = f"the platform cannot be rebuilt with it: {error}"
         if why is not None:
             untried.setdefault(key, why)
+    found += _with_friction_moved(platform)
     tried = {key for each in found for key in each.keys}
     return tuple(found), {key: why for key, why in untried.items() if key not in tried}
 
@@ -114,9 +116,11 @@ def on_any_side(provides: frozenset[str]) -> frozenset[str]:
 
 def pairs(first: Rebuilt) -> tuple[Rebuilt, ...]:
     """The structures one step away from the platform of the structure `first`, each as a pair with
-    `first`; nothing is put in place of what that added.
+    `first`; nothing is put in place of what that added, and no friction moved behind it, which is
+    tried beside it anyway.
     """
     own = {(e.effect, e.axis) for e in first.added}
+    have = {(e.effect, e.axis) for e in first.platform.effects}
     return tuple(
         replace(
             second,
@@ -127,6 +131,7 @@ def pairs(first: Rebuilt) -> tuple[Rebuilt, ...]:
         )
         for second in structures(first.platform)[0]
         if not own & {(e.effect, e.axis) for e in second.removed}
+        and not have & {(e.effect, e.axis) for e in second.added}
     )
 
 
@@ -226,17 +231,43 @@ def _with_friction_behind(
     """`platform` with an effect that splits the axis, and the dry friction that this leaves at the
     gear behind it, as in the bearings of a heavy load. None where it is said where friction sits.
     """
-    splits = any(one.startswith(("shaft", "play")) for one in as_declared.provides)
+    splits = any(one.startswith(SPLITTING) for one in as_declared.provides)
+    moved = _behind(platform, axis) if splits else None
+    if moved is None:
+        return ()
+    rebuilt = _rebuilt(moved, effect, axis)
+    return (replace(rebuilt, notes=(f"friction at the {BEHIND}", *rebuilt.notes[1:])),)
+
+
+def _with_friction_moved(platform: Platform) -> Iterator[Rebuilt]:
+    """`platform` with the dry friction behind the shaft or gap that is declared on its axis, where
+    it is not said on which side it sits.
+    """
+    declared = {(e.effect, e.axis) for e in platform.effects}
+    for axis in platform.axes:
+        there = {f"{mechanism} {axis}" for mechanism in SPLITTING}
+        moved = _behind(platform, axis) if there & _mechanisms(platform, declared) else None
+        if moved is not None:
+            added = tuple(e for e in moved.effects if e not in platform.effects)
+            removed = tuple(e for e in platform.effects if e not in moved.effects)
+            provides = frozenset({f"friction {axis} at the {BEHIND}"})
+            notes = (f"at the {BEHIND}",) * len(added)
+            yield Rebuilt(moved, added, removed, ({},), provides, notes)
+
+
+def _behind(platform: Platform, axis: str | None) -> Platform | None:
+    """`platform` with the dry friction of an axis at its joint; None where nothing is moved by
+    that, or it is said where friction sits.
+    """
     movable = [
         e
         for e in platform.effects
-        if splits and e.axis == axis and e.site is None and find_effect(e.effect).sites
+        if e.axis == axis and e.site is None and find_effect(e.effect).sites
     ]
     if not movable:
-        return ()
+        return None
     moved = tuple(replace(e, site=BEHIND) if e in movable else e for e in platform.effects)
-    rebuilt = _rebuilt(replace(platform, effects=moved), effect, axis)
-    return (replace(rebuilt, notes=(f"friction at the {BEHIND}", *rebuilt.notes[1:])),)
+    return replace(platform, effects=moved)
 
 
 def _within(declared: ParameterDeclaration, own: Parameter) -> ParameterDeclaration:

@@ -33,6 +33,7 @@ from ptp_symbolic.workflows.provenance import provenance
 from ptp_symbolic.workflows.rules import RULES, Rule, switched_off
 from ptp_symbolic.workflows.stored_evidence import FILE, Header, read_evidence, written
 from ptp_symbolic.workflows.structure_choice import Logs, chosen_structure
+from tests.benchmark.rule_lines import rule_lines
 from tests.benchmark.score import score
 
 
@@ -174,7 +175,8 @@ def prices(
     folders: Sequence[Path], pattern: str, simulate: bool, value: float | None = None
 ) -> Iterator[str]:
     """A line for the verdict of every folder and for each that changes without a rule whose name
-    has the pattern (or with another `value` of it), then one for every such rule with how many do.
+    has the pattern (or with another `value` of it), then one for every such rule with how many do,
+    and how many lines of source go with it.
 
     One folder after the other: what is made of its logs takes most of the time, and the memory.
     """
@@ -191,8 +193,9 @@ def prices(
             found[rule.name].append(change)
             if change.kind != "none":
                 yield f"    {without} {rule.name}: {change.after}"
+    lines = rule_lines(rules)
     for rule in rules:
-        yield f"{rule.name}: {_counted(found[rule.name])}"
+        yield f"{rule.name}: {_counted(found[rule.name])}; {lines[rule.name]} lines"
 
 
 def _counted(changes: Sequence[Change]) -> str:

@@ -1,8 +1,10 @@
-"""Dry friction in the bearings of a load, behind a soft shaft that nobody declared: logs tell on
-which side of the shaft it sits.
+"""Dry friction in the bearings of a load, behind a soft shaft: logs tell on which side of the shaft
+it sits, whether somebody declared the shaft or nobody did.
 """
 
 from collections.abc import Iterator
+from concurrent.futures import Executor
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +14,12 @@ from ptp_symbolic.models.structures import structures
 from ptp_symbolic.numeric.data import log_files, read_logs
 from ptp_symbolic.numeric.diagnose.structures import FittedStructure, begin_structure, is_better
 from ptp_symbolic.numeric.identify.intervals import estimates
-from ptp_symbolic.platform import read_platform
+from ptp_symbolic.platform import (
+    EffectDeclaration,
+    ParameterDeclaration,
+    Platform,
+    read_platform,
+)
 from ptp_symbolic.workflows.preparation import model_of, problem_for, workers
 from tests.diagnose.motor_on_shaft import Machine, angles, write_log
 
@@ -87,26 +94,40 @@ def record(path: Path, seed: int) -> None:
 
 
 @pytest.fixture(scope="module")
-def shafts(tmp_path_factory: pytest.TempPathFactory) -> Iterator[list[FittedStructure]]:
-    """The two shafts, friction at the gear and behind it, fitted to the logs."""
-    folder = tmp_path_factory.mktemp("bearings")
-    (folder / "platform.toml").write_text(PLATFORM, encoding="utf-8")
-    paths = [folder / f"run_{k}.csv" for k in range(3)]
-    for seed, path in enumerate(paths):
-        record(path, seed)
-    platform = read_platform(folder / "platform.toml")
-    logs = read_logs(log_files(paths), platform)
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The platform, on a rigid gear, and three runs."""
+    made = tmp_path_factory.mktemp("bearings")
+    (made / "platform.toml").write_text(PLATFORM, encoding="utf-8")
+    for seed in range(3):
+        record(made / f"run_{seed}.csv", seed)
+    return made
+
+
+@pytest.fixture(scope="module")
+def executor() -> Iterator[Executor]:
+    """What fits run in, as long as anything is asked of them."""
+    with workers() as own:
+        yield own
+
+
+def fitted(platform: Platform, folder: Path, key: str, executor: Executor) -> list[FittedStructure]:
+    """The structures with the effect `key` one step away from a platform, fitted to the runs."""
+    logs = read_logs(log_files(sorted(folder.glob("*.csv"))), platform)
     found = []
-    with workers() as executor:
-        for one in structures(platform)[0]:
-            if one.keys == ("shaft_compliance@pan",):
-                model = model_of(one.platform)
-                problem = problem_for(
-                    one.platform, model, logs, logs, (), executor, lambda text: None
-                )
-                begun = begin_structure(one.keys, one.provides, problem, one.starts, {}, one.notes)
-                found.append(begun.finished())
-        yield found
+    for one in structures(platform)[0]:
+        if one.keys == (key,):
+            model = model_of(one.platform)
+            problem = problem_for(one.platform, model, logs, logs, (), executor, lambda text: None)
+            begun = begin_structure(one.keys, one.provides, problem, one.starts, {}, one.notes)
+            found.append(begun.finished())
+    return found
+
+
+@pytest.fixture(scope="module")
+def shafts(folder: Path, executor: Executor) -> list[FittedStructure]:
+    """The two shafts, friction at the gear and behind it, fitted to the runs."""
+    platform = read_platform(folder / "platform.toml")
+    return fitted(platform, folder, "shaft_compliance@pan", executor)
 
 
 def test_the_logs_tell_on_which_side_of_a_shaft_friction_sits(
@@ -132,3 +153,20 @@ def test_a_shaft_that_begins_twisted_has_its_true_stiffness_and_friction(
     for name, value in true.items():
         assert own[name].lower <= value <= own[name].upper, name
         assert own[name].value == pytest.approx(value, rel=0.05), name
+
+
+def test_friction_is_moved_behind_a_shaft_that_is_declared(
+    folder: Path, executor: Executor
+) -> None:
+    rigid = read_platform(folder / "platform.toml")
+    shaft = EffectDeclaration("shaft_compliance", "pan", None)
+    own = (
+        ParameterDeclaration("k_shaft_pan", "N m/rad", 100.0, free=True),
+        ParameterDeclaration("d_shaft_pan", "N m s/rad", 0.3, free=True),
+    )
+    declared = replace(rigid, effects=(*rigid.effects, shaft), parameters=(*rigid.parameters, *own))
+    (moved,) = fitted(declared, folder, "csvs_friction@pan", executor)
+    assert moved.is_noise_alone
+    known = {e.name: e for e in estimates(moved.trial.fit)}
+    for name, value in {"F_c_pan": MACHINE.coulomb, "F_s_pan": MACHINE.static}.items():
+        assert known[name].value == pytest.approx(value, rel=0.05), name

@@ -156,6 +156,19 @@ def frictions(platform: Platform) -> list[EffectDeclaration]:
     return [e for e in platform.effects if e.effect == "csvs_friction"]
 
 
+def test_friction_may_be_behind_a_declared_shaft_unless_its_site_is_said() -> None:
+    split = platform_of(*BODIES, *SERVO, ("shaft_compliance", "pan"))
+    (moved,) = [s for s in structures(split)[0] if s.keys == ("csvs_friction@pan",)]
+    (friction,) = frictions(moved.platform)
+    assert friction.site == "joint" and moved.notes == ("at the joint",)
+    assert len(moved.platform.effects) == len(split.effects)
+    said = tuple(
+        replace(e, site="gear") if e.effect == "csvs_friction" else e for e in split.effects
+    )
+    for other in (replace(split, effects=said), platform_of(*BODIES, *SERVO)):
+        assert ("csvs_friction@pan",) not in keys_of(other)
+
+
 def test_starts_are_in_the_scale_of_a_heavy_axis() -> None:
     """So that a shaft swings as fast on it as on a usual one: by its stiffness over the inertia."""
     platform = platform_of(*BODIES, *SERVO)

@@ -44,7 +44,6 @@ class Candidate:
     brings: tuple[str, ...] = ()
     dominant: tuple[str, ...] = ()
     member: int = 0
-    member_title: str = ""
     frequencies_compared: int = 1
     whole_only: frozenset[str] = frozenset()
 

@@ -46,7 +46,6 @@ from ptp_symbolic.numeric.identify.run import WINDOW, Around, Run, thinned, with
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.inputs import part_of_sampled
 
-BoolArray = NDArray[np.bool_]
 FloatArray = NDArray[np.float64]
 
 
