@@ -146,7 +146,7 @@ def _members(
     brings = tuple(key for key in effect.acts_on if key not in declared)
     dominant = members[0][1] if effect.first_leads else ()
     found = []
-    for number, (title, names, ties) in enumerate(members):
+    for number, (_, names, ties) in enumerate(members):
         own = [by_name[name] for name in names]
         followers = {leader: tuple(f for f, t in ties if t == leader) for _, leader in ties}
         shaping = [p for p in own if p.vanishes is None and p.locked_to is None]
@@ -165,7 +165,6 @@ def _members(
                 brings,
                 tuple(name for name in dominant if by_name[name].vanishes is not None),
                 number,
-                title,
             )
         )
     return found
