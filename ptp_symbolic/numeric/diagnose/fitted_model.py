@@ -38,6 +38,7 @@ from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
 from ptp_symbolic.numeric.identify.least_squares import Effort
 from ptp_symbolic.numeric.identify.run import Run, sizes
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.lanes import in_portions
 
 FloatArray = NDArray[np.float64]
 
@@ -254,8 +255,7 @@ def simulated(
     def one(pair: tuple[Run, FloatArray]) -> Evaluation:
         return evaluate(problem.model, pair[0], p, pair[1], none, False, tolerance)
 
-    run = executor.map if executor else map
-    return list(run(one, zip(fit.runs, fit.z, strict=True)))
+    return in_portions(one, list(zip(fit.runs, fit.z, strict=True)), executor)
 
 
 def simulated_at(

@@ -59,6 +59,7 @@ from ptp_symbolic.numeric.identify.least_squares import (
 )
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.lanes import in_portions
 
 FloatArray = NDArray[np.float64]
 
@@ -78,10 +79,11 @@ def gears_in_place(
     """
     simulated = partial(residual_of, model, model.parameter_vector(values), tolerance)
 
-    def one(run: Run, start: FloatArray) -> FloatArray:
+    def one(pair: tuple[Run, FloatArray]) -> FloatArray:
+        run, start = pair
         return with_gap_places(run, start, partial(simulated, run))
 
-    return list((executor.map if executor else map)(one, runs, z))
+    return in_portions(one, list(zip(runs, z, strict=True)), executor)
 
 
 def with_gap_places(run: Run, z: FloatArray, residual: Residual) -> FloatArray:

@@ -40,6 +40,7 @@ from ptp_symbolic.numeric.identify.coordinates import (
 from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evaluate, residual_of
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.lanes import in_portions
 
 FloatArray = NDArray[np.float64]
 
@@ -139,8 +140,7 @@ class Secants:
                 return evaluations[run].by_parameter[:, column]
             return (after - evaluations[run].residual) / step
 
-        run_each = self.executor.map if self.executor else map
-        columns = list(run_each(difference, shifts))
+        columns = in_portions(difference, shifts, self.executor)
         if self.chosen is None:
             self.chosen = [
                 (r, c)
@@ -514,7 +514,7 @@ class Simulations:
 
         pairs = list(zip(self.runs, z, strict=True))
         pairs = pairs if only is None else [pairs[k] for k in only]
-        return list(self.executor.map(one, pairs)) if self.executor else [one(a) for a in pairs]
+        return in_portions(one, pairs, self.executor)
 
 
 def simulations_of(

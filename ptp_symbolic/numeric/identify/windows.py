@@ -45,6 +45,7 @@ from ptp_symbolic.numeric.identify.noise import white_noise
 from ptp_symbolic.numeric.identify.run import WINDOW, Around, Run, thinned, with_inputs, with_start
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.inputs import part_of_sampled
+from ptp_symbolic.numeric.simulation.lanes import in_portions
 
 FloatArray = NDArray[np.float64]
 
@@ -106,8 +107,7 @@ def replayed_squares(
         left = project_out(changes, by_start).reshape(*run.measured.shape, REPEATS)
         return np.asarray(np.mean(left**2, axis=0).T)
 
-    every = (executor.map if executor else map)(squares, range(len(runs)))
-    return np.stack(list(every), axis=1)
+    return np.stack(in_portions(squares, range(len(runs)), executor), axis=1)
 
 
 def propagated_noise(
@@ -174,7 +174,7 @@ def _by_input_noise(
         simulated = every[:, np.all(np.isfinite(every), axis=0)]
         return project_out(simulated, fit.evaluations[number].by_start)
 
-    every = list((executor.map if executor else map)(changes, range(len(fit.runs))))
+    every = in_portions(changes, range(len(fit.runs)), executor)
     square = np.concatenate([np.mean(c**2, axis=0) for c in every])
     if not square.size:
         return ()
@@ -281,7 +281,7 @@ def _errors_grow(
     """Which runs `cut_where_errors_grow` cuts."""
     propagated = propagated_noise(model, runs, z, p, declared_noise, executor)
     grows = np.any((propagated > 1.0) & (left < TUNING * propagated), axis=1)
-    grows |= list((executor.map if executor else map)(lambda run: _rattles(model, run, p), runs))
+    grows |= in_portions(lambda run: _rattles(model, run, p), runs, executor)
     return [bool(one) for one in grows]
 
 

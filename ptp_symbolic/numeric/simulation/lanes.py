@@ -13,12 +13,13 @@ neighbours change no bit. Smooth models go through `lanes`, all others through t
 events, one after the other in every thread.
 """
 
+import itertools
 import os
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numba import njit, types
@@ -58,6 +59,8 @@ from ptp_symbolic.numeric.simulation.run import refuse_failure
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+Item = TypeVar("Item")
+Result = TypeVar("Result")
 
 
 PATIENCE = 100_000  # steps of a trajectory, after which the runner with events takes it
@@ -353,15 +356,30 @@ def _in_threads(one: Callable[[int], None], rows: NDArray[np.int64], threads: in
     if not len(rows):
         return
     one(int(rows[0]))
-    portions = np.array_split(rows[1:], max(1, PORTIONS * threads))
-
-    def several(portion: NDArray[np.int64]) -> None:
-        for b in portion:
-            one(int(b))
-
     with ThreadPoolExecutor(threads) as pool:
-        for _ in pool.map(several, portions):
-            pass
+        in_portions(one, rows[1:].tolist(), pool, threads)
+
+
+def in_portions(
+    one: Callable[[Item], Result],
+    items: Sequence[Item],
+    executor: Executor | None,
+    threads: int | None = None,
+) -> list[Result]:
+    """`one` of all `items`, in their order, in the `threads` of an executor (None: as many as there
+    are cores), or in turn where there is none. A thread takes several of them at a time: to hand
+    one over takes as long as a short run.
+    """
+    if executor is None:
+        return [one(item) for item in items]
+    count = max(1, min(len(items), PORTIONS * (threads or cores())))
+    ends = [k * len(items) // count for k in range(count + 1)]
+    portions = [items[first:last] for first, last in itertools.pairwise(ends)]
+
+    def several(portion: Sequence[Item]) -> list[Result]:
+        return [one(item) for item in portion]
+
+    return [result for part in executor.map(several, portions) for result in part]
 
 
 def impossible(model: Model, p: FloatArray, x: FloatArray) -> tuple[IntArray, list[str]]:
