@@ -251,7 +251,7 @@ def _with_friction_moved(platform: Platform) -> Iterator[Rebuilt]:
             added = tuple(e for e in moved.effects if e not in platform.effects)
             removed = tuple(e for e in platform.effects if e not in moved.effects)
             provides = frozenset({f"friction {axis} at the {BEHIND}"})
-            notes = (f"at the {BEHIND}",) * len(added)
+            notes = (f"at the {BEHIND}, not at the gear",) * len(added)
             yield Rebuilt(moved, added, removed, ({},), provides, notes)
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from ptp_symbolic import __version__
-from ptp_symbolic.platform import Platform
+from ptp_symbolic.platform import Platform, effect_key
 from ptp_symbolic.report.derivation.curves import PACKAGES
 from ptp_symbolic.report.derivation.effects import described
 from ptp_symbolic.report.derivation.named_functions import meaning_of
@@ -48,7 +48,7 @@ def render_changes(
         r"\begin{document}\maketitle",
         _compared(before, after),
         _errors(diagnosis) if diagnosis is not None else "",
-        _effects(after, old, new, changes),
+        _effects(before, after, old, new, changes),
         _quantities(old, new, diagnosis or {}),
         r"\section{Equations, term by term}",
         displayed_changes(changes) or "No equation differs.",
@@ -93,8 +93,12 @@ def _figure(value: Any) -> str:
     return escaped(number(value))
 
 
-def _effects(after: Platform, old: Equations, new: Equations, changes: Sequence[Change]) -> str:
-    """The effects that were added, each with its law, and those that are gone."""
+def _effects(
+    before: Platform, after: Platform, old: Equations, new: Equations, changes: Sequence[Change]
+) -> str:
+    """The effects that were added, each with its law, those that act at another site, and those
+    that are gone.
+    """
     had, has = ({(e.effect.id, e.axis, e.effect.kind) for e in m.effects} for m in (old, new))
     added = [law for law in laws(after) if (law.effect.id, law.axis, law.effect.kind) in has - had]
     parts = [r"\section{Effects}"]
@@ -103,6 +107,14 @@ def _effects(after: Platform, old: Equations, new: Equations, changes: Sequence[
         parts.append(described(added[0], new, changes, new.ledger - old.ledger))
     else:
         parts += [described(law, new) for law in added]
+    sites = {effect_key(e.effect, e.axis): e.site for e in before.effects}
+    moved = [
+        rf"\texttt{{{escaped(key)}}} to the {e.site or 'gear'}"
+        for e in after.effects
+        if sites.get(key := effect_key(e.effect, e.axis), e.site) != e.site
+    ]
+    if moved:
+        parts.append(rf"\par Moved: {', '.join(moved)}.")
     if gone := sorted(had - has, key=str):
         names = ", ".join(rf"\texttt{{{escaped(name)}}}" for name, _, _ in gone)
         parts.append(rf"\par Gone: {names}.")

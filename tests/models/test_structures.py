@@ -160,7 +160,7 @@ def test_friction_may_be_behind_a_declared_shaft_unless_its_site_is_said() -> No
     split = platform_of(*BODIES, *SERVO, ("shaft_compliance", "pan"))
     (moved,) = [s for s in structures(split)[0] if s.keys == ("csvs_friction@pan",)]
     (friction,) = frictions(moved.platform)
-    assert friction.site == "joint" and moved.notes == ("at the joint",)
+    assert friction.site == "joint" and moved.notes == ("at the joint, not at the gear",)
     assert len(moved.platform.effects) == len(split.effects)
     said = tuple(
         replace(e, site="gear") if e.effect == "csvs_friction" else e for e in split.effects

@@ -61,6 +61,16 @@ def test_backwards_the_same_is_gone() -> None:
     assert rf"${symbol_latex('k1_cable_tilt')}$" in text[text.index(r"\par Gone: $") :]
 
 
+def test_friction_that_moves_to_the_other_side_of_a_shaft_is_said() -> None:
+    before = read_platform("thesis-pan-drive")
+    moved = tuple(
+        replace(e, site="joint") if e.effect == "csvs_friction" else e for e in before.effects
+    )
+    text = changes(before, replace(before, effects=moved))
+    assert r"Moved: \texttt{csvs\_friction@pan} to the joint." in text
+    assert "Moved" not in changes(before, before)
+
+
 def test_values_that_differ_are_told_before_and_after() -> None:
     _, before = with_cable(0.37)
     after = replace(
