@@ -5,7 +5,7 @@ Which there are follows from the effects, each of which says how it is built in 
 """
 
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ptp_symbolic.errors import InputError
@@ -33,7 +33,8 @@ class Rebuilt:
     place they take. `starts` are values of the parameters that came with them, from which a fit
     begins. Every effect `provides` mechanisms: where that of another structure has all of these,
     it contains this one. `notes` say of each
-    added effect what was moved with it, or nothing.
+    added effect what was moved with it, or nothing. A fit may be led astray where one of the
+    effects `beside` is missing too.
     """
 
     platform: Platform
@@ -42,6 +43,7 @@ class Rebuilt:
     starts: tuple[Mapping[str, float], ...]
     provides: frozenset[str]
     notes: tuple[str, ...]
+    beside: tuple[EffectDeclaration, ...] = ()
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -107,6 +109,25 @@ def structures(platform: Platform) -> tuple[tuple[Rebuilt, ...], dict[str, str]]
     found += _with_friction_moved(platform)
     tried = {key for each in found for key in each.keys}
     return tuple(found), {key: why for key, why in untried.items() if key not in tried}
+
+
+def with_what_leads(platform: Platform, every: Sequence[Rebuilt]) -> Platform | None:
+    """`platform` with the effects beside which structures are led right, their parameters free;
+    None where there are none.
+    """
+    added = tuple(dict.fromkeys(effect for each in every for effect in each.beside))
+    if not added:
+        return None
+    whole = replace(platform, effects=(*platform.effects, *added))
+    own, said = {(e.effect, e.axis) for e in added}, {p.name for p in platform.parameters}
+    fresh = tuple(
+        ParameterDeclaration(p.name, p.unit, p.default, free=True)
+        for effect, place in place_effects(whole)
+        if (effect.id, place.axis) in own
+        for p in effect.parameters_at(place)
+        if p.name not in said
+    )
+    return replace(whole, parameters=(*platform.parameters, *fresh))
 
 
 def on_any_side(provides: frozenset[str]) -> frozenset[str]:
@@ -189,6 +210,7 @@ def _rebuilt(platform: Platform, effect: Effect, axis: str | None) -> Rebuilt:
     kept = tuple(e for e in platform.effects if e not in removed)
     have = {(e.effect, e.axis) for e in kept}
     along = effect.structure.along_with if effect.structure else ()
+    leading = effect.structure.beside if effect.structure else ()
     added = (
         EffectDeclaration(effect.id, axis, next((e.site for e in removed), None), effect.kind),
         *(EffectDeclaration(other, axis, None) for other in along if (other, axis) not in have),
@@ -222,6 +244,7 @@ def _rebuilt(platform: Platform, effect: Effect, axis: str | None) -> Rebuilt:
         tuple(dict(zip(names, point, strict=True)) for point in itertools.product(*grid)),
         _mechanisms(rebuilt, new),
         ("",) * len(added),
+        tuple(EffectDeclaration(e, axis, None) for e in leading if (e, axis) not in have),
     )
 
 

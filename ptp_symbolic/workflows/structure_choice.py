@@ -7,11 +7,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import variants
-from ptp_symbolic.models.structures import Rebuilt, pairs, structures, to_scale
+from ptp_symbolic.models.structures import Rebuilt, pairs, structures
 from ptp_symbolic.models.variants import candidate_effects
 from ptp_symbolic.numeric.diagnose.fitted_model import (
     FittedModel,
@@ -54,7 +52,13 @@ from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.numeric.identify.windows import parted_like
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.workflows.preparation import effect_keys, model_of, problem_for, with_effects
-from ptp_symbolic.workflows.structure_fits import Fitted, Logs, fit_structures
+from ptp_symbolic.workflows.structure_fits import (
+    Fitted,
+    Logs,
+    fit_structures,
+    in_scale,
+    leading_platform,
+)
 
 LEAST_SHARE = 0.1  # of the allowance, for the brief search beside a structure that fits well
 
@@ -127,7 +131,7 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     structure that fits best, and of the declared one where that is beaten by little.
     """
     every, untried = structures(platform)
-    every = _to_scale(every, platform)
+    every = in_scale(every, platform)
     platforms = _platforms(every)
 
     def searched(
@@ -152,6 +156,9 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     fitted = fit_structures(platform, every, logs, known, terms.found if beside else None)
     if not terms.is_noise_alone and not fitted.quiet and not logs.allowance.is_over:
         again = _fitted_beside(platform, beside, fitted, logs) if beside else None
+        if not (again and again.quiet):
+            leading = leading_platform(platform, every, fitted, logs)
+            again = (leading and _fitted_beside(platform, leading, fitted, logs)) or again
         fitted = again or fitted.over_windows_too(logs)
         if not fitted.quiet and fitted.order and not logs.allowance.is_over:
             fitted, paired = _paired(fitted, every, logs)
@@ -172,20 +179,6 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     rows = tuple(_row(s, fitted.declared, chosen, refused, alike) for s in [*order, *rest])
     is_cut_short = is_late or any(s.found.is_cut_short for s in [terms, *outcomes])
     return Choice(chosen, terms.decided, rows, {**untried, **fitted.failed}, is_cut_short)
-
-
-def _to_scale(every: Sequence[Rebuilt], platform: Platform) -> tuple[Rebuilt, ...]:
-    """Structures with their starts in the scale of a platform."""
-    model = model_of(platform)
-    axes, states = model.module.AXES, model.state_names
-    x, u = np.zeros(len(states)), np.zeros(len(model.input_names))
-    p = model.parameter_vector({d.name: d.value for d in platform.parameters})
-    mass, inertia = np.zeros((len(states), len(states))), dict.fromkeys(axes, 0.0)
-    model.module.mass_matrix(0.0, x, u, p, np.ones(len(model.mode_names)), mass)
-    bodies = [*axes, *(a for a in axes if f"omega_gear_{a}" in states)]
-    for axis, own in zip(bodies, np.diag(mass), strict=False):
-        inertia[axis] += float(own)
-    return tuple(to_scale(rebuilt, inertia) for rebuilt in every)
 
 
 def _platforms(every: Sequence[Rebuilt]) -> dict[tuple[tuple[str, ...], frozenset[str]], Platform]:
@@ -220,7 +213,7 @@ def _fitted_beside(
     than these alone.
     """
     own = {(s.keys, s.provides) for s in fitted.every}
-    every = _to_scale(structures(beside)[0], platform)
+    every = in_scale(structures(beside)[0], platform)
     found = fit_structures(beside, [r for r in every if (r.keys, r.provides) in own], logs)
     found = found if found.quiet else found.over_windows_too(logs)
     return replace(found, failed={**fitted.failed, **found.failed}) if found.order else None
@@ -271,7 +264,7 @@ def _paired(
         return fitted, ()
     declared = next(r for r in every if (r.keys, r.provides) == (best.keys, best.provides))
     there = variants.extended(declared.platform, (), best.trial.values, ())
-    beside = _to_scale(pairs(replace(declared, platform=there)), there)
+    beside = in_scale(pairs(replace(declared, platform=there)), there)
     logs.progress(f"fitting pairs with {' + '.join(best.keys)}")
     found = fit_structures(there, beside, logs)
     if not found.quiet:

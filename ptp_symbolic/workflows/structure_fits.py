@@ -5,8 +5,16 @@ from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import numpy as np
+
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.models.structures import Rebuilt, on_any_side
+from ptp_symbolic.models.structures import (
+    Rebuilt,
+    on_any_side,
+    structures,
+    to_scale,
+    with_what_leads,
+)
 from ptp_symbolic.numeric.data import Log
 from ptp_symbolic.numeric.diagnose.fitted_model import side_by_side
 from ptp_symbolic.numeric.diagnose.stepwise import Search
@@ -16,6 +24,7 @@ from ptp_symbolic.numeric.diagnose.structures import (
     by_fit,
     comes_near,
     deviance,
+    gain_over,
     is_better,
     is_identifiable,
     is_near,
@@ -116,6 +125,51 @@ def fit_structures(
     failed = {r.keys[0]: b for r, b in results if isinstance(b, str) and r.keys[0] not in tried}
     finished = _finished(begun, better, declared, rival)
     return Fitted(declared, _from_those_that_contain(finished, better, declared), better, failed)
+
+
+def in_scale(every: Sequence[Rebuilt], platform: Platform) -> tuple[Rebuilt, ...]:
+    """Structures with their starts in the scale of a platform."""
+    model = model_of(platform)
+    axes, states = model.module.AXES, model.state_names
+    x, u = np.zeros(len(states)), np.zeros(len(model.input_names))
+    p = model.parameter_vector({d.name: d.value for d in platform.parameters})
+    mass, inertia = np.zeros((len(states), len(states))), dict.fromkeys(axes, 0.0)
+    model.module.mass_matrix(0.0, x, u, p, np.ones(len(model.mode_names)), mass)
+    bodies = [*axes, *(a for a in axes if f"omega_gear_{a}" in states)]
+    for axis, own in zip(bodies, np.diag(mass), strict=False):
+        inertia[axis] += float(own)
+    return tuple(to_scale(rebuilt, inertia) for rebuilt in every)
+
+
+def leading_platform(
+    platform: Platform, every: Sequence[Rebuilt], fitted: Fitted, logs: Logs
+) -> Platform | None:
+    """The platform with the effects beside which some structures are led right, where the best of
+    these surely halves the squared error of the best that was fitted without; else None. A gap
+    alone fits next to nothing where a torque holds the gear on one face.
+    """
+    leading = with_what_leads(platform, every)
+    if leading is None:
+        return None
+    own = {(r.keys, r.provides) for r in every if r.beside}
+    there = [r for r in structures(leading)[0] if (r.keys, r.provides) in own]
+    logs.progress(f"fitting {len(there)} structures beside what may lead them")
+
+    def one(rebuilt: Rebuilt) -> FittedStructure | None:
+        try:
+            return _begun(rebuilt.platform, rebuilt, logs, fitted.declared.trial.values)
+        except InputError:
+            return None
+
+    def cost(structure: FittedStructure) -> float:
+        return deviance(structure, fitted.declared)
+
+    before = min((s for s in (fitted.declared, *fitted.every) if not s.trial.fit.failed), key=cost)
+    led = [s for s in side_by_side(one, in_scale(there, platform)) if s and not s.trial.fit.failed]
+    ahead = [s for s in led if cost(s) < cost(before)]
+    ends = side_by_side(FittedStructure.finished, ahead)
+    best = min(ends, key=cost, default=before)
+    return leading if best is not before and gain_over(best, before).is_most else None
 
 
 def _finished(

@@ -63,13 +63,14 @@ class Structure:
     `needs` are quantities that a declared effect must define on the axis. Of the effects named in
     `in_place_of`, one must be declared on the axis: the effect takes its place. Those named in
     `along_with` come with it where they are not declared. It cannot stand beside those named in
-    `excluded_by`.
+    `excluded_by`. A fit of it is led astray where one of those named in `beside` is missing too.
     """
 
     needs: tuple[str, ...] = ()
     in_place_of: tuple[str, ...] = ()
     along_with: tuple[str, ...] = ()
     excluded_by: tuple[str, ...] = ()
+    beside: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,7 @@ RESTITUTION = Parameter(
     "e_gap_{axis}", "1", 0.5, 0.0, 1.0, "restitution: speed apart after a strike, per speed before"
 )
 DRIVE = ("winding_resistance_{axis}",)
+LEANING = ("constant_torque",)  # which face the gear lies on is all that a small one changes
 EXPERIMENT = (
     "Reverse slowly with and without a known preload torque on the joint: backlash disappears under"
     " preload, presliding does not."
@@ -54,7 +55,7 @@ def _kind(
         contribute=contribute,
         structural=True,
         splits_axis=True,
-        structure=Structure(needs=DRIVE) if bounces else None,
+        structure=Structure(needs=DRIVE, beside=LEANING) if bounces else None,
         separating_experiment=EXPERIMENT,
     )
 
@@ -67,7 +68,7 @@ BACKLASH = Effect(
     parameters=(GAP,),
     contribute=_contribute,
     needs=("half_gap_{axis}",),
-    structure=Structure(needs=DRIVE, along_with=("shaft_compliance",)),
+    structure=Structure(needs=DRIVE, along_with=("shaft_compliance",), beside=LEANING),
     separating_experiment=EXPERIMENT,
     kinds=(
         _kind("elastic_impact", "backlash with elastic impact", "Newton's restitution", True),
