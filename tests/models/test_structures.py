@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.models.structures import structures, to_scale
+from ptp_symbolic.models.structures import structures, to_scale, with_what_leads
 from ptp_symbolic.models.variants import candidate_effects, with_candidates
 from ptp_symbolic.platform import (
     EffectDeclaration,
@@ -167,6 +167,20 @@ def test_friction_may_be_behind_a_declared_shaft_unless_its_site_is_said() -> No
     )
     for other in (replace(split, effects=said), platform_of(*BODIES, *SERVO)):
         assert ("csvs_friction@pan",) not in keys_of(other)
+
+
+def test_gaps_are_tried_beside_a_torque_that_holds_the_gear_on_a_face() -> None:
+    platform = platform_of(*BODIES, *SERVO)
+    every = structures(platform)[0]
+    led = {s.keys[0] for s in every if s.beside}
+    assert led == {"backlash@pan"}
+    leading = with_what_leads(platform, every)
+    assert leading is not None
+    (torque,) = [e for e in leading.effects if e not in platform.effects]
+    assert (torque.effect, torque.axis) == ("constant_torque", "pan")
+    assert {p.name: (p.value, p.free) for p in leading.parameters} == {"tau0_pan": (0.0, True)}
+    known = platform_of(*BODIES, *SERVO, ("constant_torque", "pan"))
+    assert with_what_leads(known, structures(known)[0]) is None
 
 
 def test_starts_are_in_the_scale_of_a_heavy_axis() -> None:
