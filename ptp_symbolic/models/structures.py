@@ -111,13 +111,19 @@ def structures(platform: Platform) -> tuple[tuple[Rebuilt, ...], dict[str, str]]
     return tuple(found), {key: why for key, why in untried.items() if key not in tried}
 
 
-def with_what_leads(platform: Platform, every: Sequence[Rebuilt]) -> Platform | None:
-    """`platform` with the effects beside which structures are led right, their parameters free;
-    None where there are none.
+def with_what_leads(platform: Platform, every: Sequence[Rebuilt]) -> tuple[Platform, ...]:
+    """`platform` with each of the effects beside which structures are led right, on all of their
+    axes, its parameters free.
     """
-    added = tuple(dict.fromkeys(effect for each in every for effect in each.beside))
-    if not added:
-        return None
+    effects = dict.fromkeys(effect for each in every for effect in each.beside)
+    return tuple(
+        _with_free(platform, tuple(e for e in effects if e.effect == name))
+        for name in dict.fromkeys(e.effect for e in effects)
+    )
+
+
+def _with_free(platform: Platform, added: tuple[EffectDeclaration, ...]) -> Platform:
+    """`platform` with effects whose parameters are free."""
     whole = replace(platform, effects=(*platform.effects, *added))
     own, said = {(e.effect, e.axis) for e in added}, {p.name for p in platform.parameters}
     fresh = tuple(

@@ -149,15 +149,20 @@ def leading_platform(
     alone fits next to nothing where a torque holds the gear on one face.
     """
     leading = with_what_leads(platform, every)
-    if leading is None:
+    if not leading:
         return None
     own = {(r.keys, r.provides) for r in every if r.beside}
-    there = [r for r in structures(leading)[0] if (r.keys, r.provides) in own]
+    there = [
+        (beside, rebuilt)
+        for beside in leading
+        for rebuilt in in_scale(structures(beside)[0], platform)
+        if (rebuilt.keys, rebuilt.provides) in own
+    ]
     logs.progress(f"fitting {len(there)} structures beside what may lead them")
 
-    def one(rebuilt: Rebuilt) -> FittedStructure | None:
+    def one(pair: tuple[Platform, Rebuilt]) -> FittedStructure | None:
         try:
-            return _begun(rebuilt.platform, rebuilt, logs, fitted.declared.trial.values)
+            return _begun(pair[1].platform, pair[1], logs, fitted.declared.trial.values)
         except InputError:
             return None
 
@@ -165,11 +170,16 @@ def leading_platform(
         return deviance(structure, fitted.declared)
 
     before = min((s for s in (fitted.declared, *fitted.every) if not s.trial.fit.failed), key=cost)
-    led = [s for s in side_by_side(one, in_scale(there, platform)) if s and not s.trial.fit.failed]
-    ahead = [s for s in led if cost(s) < cost(before)]
-    ends = side_by_side(FittedStructure.finished, ahead)
-    best = min(ends, key=cost, default=before)
-    return leading if best is not before and gain_over(best, before).is_most else None
+    begun = zip(there, side_by_side(one, there), strict=True)
+    led = [(beside, s) for (beside, _), s in begun if s and not s.trial.fit.failed]
+    ahead = [(beside, s) for beside, s in led if cost(s) < cost(before)]
+    ends = side_by_side(FittedStructure.finished, [s for _, s in ahead])
+    best, found = min(
+        ((end, beside) for (beside, _), end in zip(ahead, ends, strict=True)),
+        key=lambda pair: cost(pair[0]),
+        default=(None, None),
+    )
+    return found if best and gain_over(best, before).is_most else None
 
 
 def _finished(

@@ -169,18 +169,19 @@ def test_friction_may_be_behind_a_declared_shaft_unless_its_site_is_said() -> No
         assert ("csvs_friction@pan",) not in keys_of(other)
 
 
-def test_gaps_are_tried_beside_a_torque_that_holds_the_gear_on_a_face() -> None:
+def test_gaps_are_tried_beside_torques_that_hold_the_gear_on_a_face() -> None:
     platform = platform_of(*BODIES, *SERVO)
     every = structures(platform)[0]
     led = {s.keys[0] for s in every if s.beside}
     assert led == {"backlash@pan"}
-    leading = with_what_leads(platform, every)
-    assert leading is not None
-    (torque,) = [e for e in leading.effects if e not in platform.effects]
-    assert (torque.effect, torque.axis) == ("constant_torque", "pan")
-    assert {p.name: (p.value, p.free) for p in leading.parameters} == {"tau0_pan": (0.0, True)}
-    known = platform_of(*BODIES, *SERVO, ("constant_torque", "pan"))
-    assert with_what_leads(known, structures(known)[0]) is None
+    by_torque, by_spring = with_what_leads(platform, every)
+    for leading, name in ((by_torque, "constant_torque"), (by_spring, "cable_spring")):
+        (added,) = [e for e in leading.effects if e not in platform.effects]
+        assert (added.effect, added.axis) == (name, "pan")
+        assert all(p.free for p in leading.parameters)
+    assert {p.name: p.value for p in by_torque.parameters} == {"tau0_pan": 0.0}
+    known = platform_of(*BODIES, *SERVO, ("constant_torque", "pan"), ("cable_spring", "pan"))
+    assert with_what_leads(known, structures(known)[0]) == ()
 
 
 def test_starts_are_in_the_scale_of_a_heavy_axis() -> None:

@@ -24,7 +24,8 @@ RESTITUTION = Parameter(
     "e_gap_{axis}", "1", 0.5, 0.0, 1.0, "restitution: speed apart after a strike, per speed before"
 )
 DRIVE = ("winding_resistance_{axis}",)
-LEANING = ("constant_torque",)  # which face the gear lies on is all that a small one changes
+# On which face the gear lies is nearly all that a small torque of one of these changes.
+LEANING = ("constant_torque", "cable_spring")
 EXPERIMENT = (
     "Reverse slowly with and without a known preload torque on the joint: backlash disappears under"
     " preload, presliding does not."
