@@ -144,9 +144,9 @@ def in_scale(every: Sequence[Rebuilt], platform: Platform) -> tuple[Rebuilt, ...
 def leading_platform(
     platform: Platform, every: Sequence[Rebuilt], fitted: Fitted, logs: Logs
 ) -> Platform | None:
-    """The platform with the effects beside which some structures are led right, where the best of
-    these surely halves the squared error of the best that was fitted without; else None. A gap
-    alone fits next to nothing where a torque holds the gear on one face.
+    """The platform with effects beside which some structures are led right, where one of these
+    surely halves the squared error of the best that was fitted without; else None. A gap alone fits
+    next to nothing where a torque holds the gear on one face.
     """
     leading = with_what_leads(platform, every)
     if not leading:
@@ -174,12 +174,8 @@ def leading_platform(
     led = [(beside, s) for (beside, _), s in begun if s and not s.trial.fit.failed]
     ahead = [(beside, s) for beside, s in led if cost(s) < cost(before)]
     ends = side_by_side(FittedStructure.finished, [s for _, s in ahead])
-    best, found = min(
-        ((end, beside) for (beside, _), end in zip(ahead, ends, strict=True)),
-        key=lambda pair: cost(pair[0]),
-        default=(None, None),
-    )
-    return found if best and gain_over(best, before).is_most else None
+    better = [(cost(end), k) for k, end in enumerate(ends) if gain_over(end, before).is_most]
+    return ahead[min(better)[1]][0] if better else None
 
 
 def _finished(
