@@ -3,7 +3,9 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform
+from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.contributions import TORQUES
 from ptp_symbolic.symbolic.derivation.placement import (
     available_quantities,
@@ -57,6 +59,27 @@ def described_by(platform: Platform, effect: Effect, axis: str | None) -> str | 
 def with_candidates(platform: Platform) -> Platform:
     """`platform` with every candidate effect added."""
     return replace(platform, effects=(*platform.effects, *candidate_effects(platform)))
+
+
+def with_candidates_that_fit(platform: Platform) -> Platform:
+    """`platform` with those candidate effects that can stand beside it and each other: a friction
+    by load cannot beside a rigid gap, which leaves that load open.
+    """
+    return _with_those_that_fit(platform, candidate_effects(platform))
+
+
+def _with_those_that_fit(platform: Platform, added: tuple[EffectDeclaration, ...]) -> Platform:
+    whole = replace(platform, effects=(*platform.effects, *added))
+    try:
+        assemble(whole)
+    except InputError:
+        half = len(added) // 2
+        if half == 0:
+            return platform
+        for part in (added[:half], added[half:]):
+            platform = _with_those_that_fit(platform, part)
+        return platform
+    return whole
 
 
 def torque_driven(platform: Platform) -> Platform:

@@ -359,8 +359,8 @@ def _searched(
     try:
         model = model_of(begun if is_alone else variants.with_candidates(begun))
     except InputError as error:  # a candidate that cannot be beside the structure
-        logs.progress(f"no terms are searched for: {error}")
-        model = model_of(begun)
+        logs.progress(f"not all terms are searched for: {error}")
+        model = model_of(variants.with_candidates_that_fit(begun))
     problem = problem_for(
         begun,
         model,

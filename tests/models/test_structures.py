@@ -8,7 +8,11 @@ import pytest
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models.structures import structures, to_scale, with_what_leads
-from ptp_symbolic.models.variants import candidate_effects, with_candidates
+from ptp_symbolic.models.variants import (
+    candidate_effects,
+    with_candidates,
+    with_candidates_that_fit,
+)
 from ptp_symbolic.platform import (
     EffectDeclaration,
     Platform,
@@ -16,6 +20,7 @@ from ptp_symbolic.platform import (
     effect_key,
     read_platform,
 )
+from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.placement import place_effects
 from ptp_symbolic.symbolic.effects import EFFECTS
 
@@ -182,6 +187,18 @@ def test_gaps_are_tried_beside_torques_that_hold_the_gear_on_a_face() -> None:
     assert {p.name: p.value for p in by_torque.parameters} == {"tau0_pan": 0.0}
     known = platform_of(*BODIES, *SERVO, ("constant_torque", "pan"), ("cable_spring", "pan"))
     assert with_what_leads(known, structures(known)[0]) == ()
+
+
+def test_what_cannot_stand_beside_a_rigid_gap_leaves_all_other_candidates_in() -> None:
+    every = structures(platform_of(*BODIES, *SERVO))[0]
+    rigid = next(s.platform for s in every if s.keys == ("backlash@pan",))
+    with pytest.raises(InputError, match="rigid backlash leaves"):
+        assemble(with_candidates(rigid))
+    kept, every_one = (
+        {e.effect for e in made(rigid).effects}
+        for made in (with_candidates_that_fit, with_candidates)
+    )
+    assert every_one - kept == {"load_dependent_friction"}
 
 
 def test_starts_are_in_the_scale_of_a_heavy_axis() -> None:
