@@ -24,8 +24,7 @@ RESTITUTION = Parameter(
     "e_gap_{axis}", "1", 0.5, 0.0, 1.0, "restitution: speed apart after a strike, per speed before"
 )
 DRIVE = ("winding_resistance_{axis}",)
-# On which face the gear lies is nearly all that a small torque of one of these changes.
-LEANING = ("constant_torque", "cable_spring")
+LEANING = ("constant_torque", "cable_spring")  # a small one decides on which face a gear lies
 EXPERIMENT = (
     "Reverse slowly with and without a known preload torque on the joint: backlash disappears under"
     " preload, presliding does not."
