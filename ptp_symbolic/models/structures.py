@@ -32,9 +32,8 @@ class Rebuilt:
     `added` are the effects that it has more, the one it is named after first; `removed` those whose
     place they take. `starts` are values of the parameters that came with them, from which a fit
     begins. Every effect `provides` mechanisms: where that of another structure has all of these,
-    it contains this one. `notes` say of each
-    added effect what was moved with it, or nothing. A fit may be led astray where one of the
-    effects `beside` is missing too.
+    it contains this one. `notes` say of each added effect what was moved with it, or nothing. A fit
+    may be led astray where one of the effects `beside` is missing too.
     """
 
     platform: Platform

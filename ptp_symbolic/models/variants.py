@@ -57,13 +57,8 @@ def described_by(platform: Platform, effect: Effect, axis: str | None) -> str | 
 
 
 def with_candidates(platform: Platform) -> Platform:
-    """`platform` with every candidate effect added."""
-    return replace(platform, effects=(*platform.effects, *candidate_effects(platform)))
-
-
-def with_candidates_that_fit(platform: Platform) -> Platform:
-    """`platform` with those candidate effects that can stand beside it and each other: a friction
-    by load cannot beside a rigid gap, which leaves that load open.
+    """`platform` with every candidate effect that can stand beside it and the others: a friction by
+    load cannot beside a rigid gap, which leaves that load open.
     """
     return _with_those_that_fit(platform, candidate_effects(platform))
 
@@ -73,12 +68,10 @@ def _with_those_that_fit(platform: Platform, added: tuple[EffectDeclaration, ...
     try:
         assemble(whole)
     except InputError:
-        half = len(added) // 2
-        if half == 0:
+        if len(added) < 2:
             return platform
-        for part in (added[:half], added[half:]):
-            platform = _with_those_that_fit(platform, part)
-        return platform
+        half = len(added) // 2
+        return _with_those_that_fit(_with_those_that_fit(platform, added[:half]), added[half:])
     return whole
 
 

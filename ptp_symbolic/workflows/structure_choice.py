@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import variants
 from ptp_symbolic.models.structures import Rebuilt, pairs, structures
 from ptp_symbolic.models.variants import candidate_effects
@@ -356,11 +355,7 @@ def _searched(
             there = begin.found.chosen.values
             values = {name: there.get(name, value) for name, value in values.items()}
         begun = variants.extended(platform, (), values, ())
-    try:
-        model = model_of(begun if is_alone else variants.with_candidates(begun))
-    except InputError as error:  # a candidate that cannot be beside the structure
-        logs.progress(f"not all terms are searched for: {error}")
-        model = model_of(variants.with_candidates_that_fit(begun))
+    model = model_of(begun if is_alone else variants.with_candidates(begun))
     problem = problem_for(
         begun,
         model,

@@ -48,8 +48,8 @@ class Engine:
         found: set[Place] = set()
         ahead = list(self.entries)
         while ahead:
-            place = self.imported.get(ahead[-1], ahead[-1])
-            ahead.pop()
+            named = ahead.pop()
+            place = self.imported.get(named, named)
             if place in found or place not in self.definitions:
                 continue
             found.add(place)
