@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform
+from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, effect_key
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.contributions import TORQUES
 from ptp_symbolic.symbolic.derivation.placement import (
@@ -73,6 +73,21 @@ def _with_those_that_fit(platform: Platform, added: tuple[EffectDeclaration, ...
         half = len(added) // 2
         return _with_those_that_fit(_with_those_that_fit(platform, added[:half]), added[half:])
     return whole
+
+
+def that_cannot_stand(platform: Platform) -> dict[str, str]:
+    """By key, the candidates that `with_candidates` leaves out, and why."""
+    kept, found = with_candidates(platform).effects, {}
+    for effect in candidate_effects(platform):
+        if effect in kept:
+            continue
+        why = "another candidate excludes it"
+        try:
+            assemble(replace(platform, effects=(*platform.effects, effect)))
+        except InputError as error:
+            why = str(error).rstrip(".")
+        found[effect_key(effect.effect, effect.axis)] = f"it cannot stand there: {why}"
+    return found
 
 
 def torque_driven(platform: Platform) -> Platform:

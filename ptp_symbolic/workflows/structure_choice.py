@@ -130,6 +130,7 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     structure that fits best, and of the declared one where that is beaten by little.
     """
     every, untried = structures(platform)
+    untried |= variants.that_cannot_stand(platform)
     every = in_scale(every, platform)
     platforms = _platforms(every)
 

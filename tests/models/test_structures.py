@@ -8,7 +8,7 @@ import pytest
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models.structures import structures, to_scale, with_what_leads
-from ptp_symbolic.models.variants import candidate_effects, with_candidates
+from ptp_symbolic.models.variants import candidate_effects, that_cannot_stand, with_candidates
 from ptp_symbolic.platform import (
     EffectDeclaration,
     Platform,
@@ -193,6 +193,10 @@ def test_what_cannot_stand_beside_a_rigid_gap_leaves_all_other_candidates_in() -
         assemble(replace(rigid, effects=(*rigid.effects, *every_one)))
     kept = with_candidates(rigid).effects
     assert {e.effect for e in every_one if e not in kept} == {"load_dependent_friction"}
+    said = that_cannot_stand(rigid)
+    assert list(said) == ["load_dependent_friction@pan"]
+    assert "which rigid backlash leaves open" in said["load_dependent_friction@pan"]
+    assert that_cannot_stand(platform_of(*BODIES, *SERVO)) == {}
 
 
 def test_starts_are_in_the_scale_of_a_heavy_axis() -> None:
