@@ -58,9 +58,9 @@ SPAN = 30.0  # 1; so many times lighter or heavier, they suit still
 
 
 def to_scale(rebuilt: Rebuilt, inertia: Mapping[str, float]) -> Rebuilt:
-    """A structure with the starts of all stiffnesses, dampings and torques that came with it in
-    proportion to the `inertia` in kg m^2 by axis, where that is far from usual: then they swing at
-    the same frequencies.
+    """A structure with the starts of inertias that came with it in proportion to the `inertia` in
+    kg m^2 by axis, and of stiffnesses, dampings and torques where that is far from usual: then they
+    swing at the same frequencies.
     """
     own = parameters_of(place_effects(rebuilt.platform))
     factors = {}
@@ -68,7 +68,7 @@ def to_scale(rebuilt: Rebuilt, inertia: Mapping[str, float]) -> Rebuilt:
         axis = next((a for a in inertia if name.endswith(f"_{a}")), None)
         ratio = 1.0 if axis is None else inertia[axis] / USUAL_INERTIA
         is_usual = not own[name].unit.startswith("N m") or 1.0 / SPAN <= ratio <= SPAN
-        factors[name] = 1.0 if is_usual else ratio
+        factors[name] = ratio if own[name].unit == "kg m^2" or not is_usual else 1.0
 
     def scaled(name: str, value: float) -> float:
         return min(max(value * factors[name], own[name].lower), own[name].upper)
@@ -101,6 +101,7 @@ def structures(platform: Platform) -> tuple[tuple[Rebuilt, ...], dict[str, str]]
             if why is None:
                 usual = _rebuilt(platform, effect, axis)
                 found += (usual, *_with_friction_behind(usual, platform, effect, axis))
+                found += _with_encoder_before(usual, platform, effect, axis)
         except InputError as error:
             why = f"the platform cannot be rebuilt with it: {error}"
         if why is not None:
@@ -218,7 +219,11 @@ def _rebuilt(platform: Platform, effect: Effect, axis: str | None) -> Rebuilt:
     leading = effect.structure.beside if effect.structure else ()
     added = (
         EffectDeclaration(effect.id, axis, next((e.site for e in removed), None), effect.kind),
-        *(EffectDeclaration(other, axis, None) for other in along if (other, axis) not in have),
+        *(
+            EffectDeclaration(other, axis, None)
+            for other in along
+            if (other, axis) not in have and not _missing(platform, find_effect(other).needs, axis)
+        ),
     )
     bare = replace(platform, effects=(*kept, *added), parameters=())
     placed = place_effects(bare)
@@ -265,6 +270,29 @@ def _with_friction_behind(
         return ()
     rebuilt = _rebuilt(moved, effect, axis)
     return (replace(rebuilt, notes=(f"friction at the {BEHIND}", *rebuilt.notes[1:])),)
+
+
+def _with_encoder_before(
+    as_declared: Rebuilt, platform: Platform, effect: Effect, axis: str | None
+) -> tuple[Rebuilt, ...]:
+    """`platform` with an effect that splits the axis, and the angle measured before it, at the
+    motor; none where no angle of the axis is.
+    """
+    splits = any(one.startswith(SPLITTING) for one in as_declared.provides)
+    signals = {s.signal for s in platform.signals if s.role == "output"}
+    encoder = EffectDeclaration("motor_encoder", axis, None)
+    if not splits or f"theta_{axis}" not in signals or encoder in platform.effects:
+        return ()
+    there = replace(platform, effects=(*platform.effects, encoder))
+    rebuilt = _rebuilt(there, effect, axis)
+    return (
+        replace(
+            rebuilt,
+            added=(*rebuilt.added, encoder),
+            notes=("encoder at the motor", *rebuilt.notes[1:], ""),
+            provides=rebuilt.provides | {f"encoder {axis} before"},
+        ),
+    )
 
 
 def _with_friction_moved(platform: Platform) -> Iterator[Rebuilt]:

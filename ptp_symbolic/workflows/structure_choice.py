@@ -560,7 +560,7 @@ def _row(
         why = refused.get(structure) or _why_not_followed(structure, declared, chosen.structure)
     earned = None if failed else gain_over(structure, declared)
     row = ranking_row(structure.added, structure.trial, earned, accepted, why)
-    title = " and ".join(c.title for c in structure.added)
+    title = " and ".join(c.title for c in structure.added if c.free)
     return {**row, "title": title, "structure": list(structure.keys)}
 
 

@@ -283,6 +283,8 @@ CASES = (
     on_joints("product_of_inertia", joints(), J_xy_tilt=1e-3),
     on_joints("axis_offset", joints(), a_tilt=0.05),
     on_joints("imu", joints()),
+    on_joints("motor_encoder", joints()),
+    on_joints("rotor_inertia", joints(), J_rotor_pan=0.03),
     on_joints("pan_com_offset", joints(), m_pan_body=2.0, c_x_pan=0.05, c_y_pan=0.02),
     on_joints("base_tilt", joints(), beta_base=0.1, alpha_base=0.4),
     on_joints("base_motion", joints(), shaken, a_base=2.0, f_base=1.7, phi_base=0.3, psi_base=0.5),

@@ -60,11 +60,30 @@ def test_an_axis_has_one_shaft() -> None:
         place_effects(platform_of(*BODIES, *SERVO, shaft, drive))
 
 
-def test_an_axis_without_a_motor_has_nothing_for_a_shaft_to_follow() -> None:
+def test_an_axis_that_a_torque_drives_brings_its_motor_along() -> None:
     platform = platform_of(*BODIES, ("csvs_friction", "pan"))
-    found, untried = structures(platform)
-    assert not any("shaft_compliance@pan" in s.keys for s in found)
-    assert "winding_resistance_pan" in untried["shaft_compliance@pan"]
+    found = keys_of(platform)
+    assert ("shaft_compliance@pan", "rotor_inertia@pan") in found
+    assert ("backlash@pan", "shaft_compliance@pan", "rotor_inertia@pan") in found
+    assert not any("rotor_inertia@pan" in keys for keys in keys_of(platform_of(*BODIES, *SERVO)))
+    shaft = next(s for s in structures(platform)[0] if s.keys[0] == "shaft_compliance@pan")
+    heavy = to_scale(shaft, {"pan": 3.0})
+    assert heavy.starts[0]["J_rotor_pan"] == pytest.approx(15.0 * shaft.starts[0]["J_rotor_pan"])
+
+
+def test_an_angle_may_be_measured_at_the_motor() -> None:
+    """Tried behind every shaft and gap, where an angle is measured at all."""
+    bare = platform_of(*BODIES, *SERVO)
+    assert not any("motor_encoder@pan" in keys for keys in keys_of(bare))
+    angle = SignalDeclaration("theta_pan", "angle", "rad", "output")
+    before = [s for s in structures(replace(bare, signals=(angle,)))[0] if len(s.keys) > 1]
+    seen = [s for s in before if s.keys[-1] == "motor_encoder@pan"]
+    assert {s.keys[0] for s in seen} == {
+        "backlash@pan",
+        "shaft_compliance@pan",
+        "harmonic_drive@pan",
+    }
+    assert all(s.notes[0] == "encoder at the motor" for s in seen)
 
 
 def test_bristles_take_the_place_of_dry_friction_and_keep_its_values() -> None:

@@ -115,6 +115,12 @@ def _of_each_other(fx, fast):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _by_turn(slopes, row, joint, gear):
+    """How a reading changes as a joint turns, and what is before its shaft with it."""
+    return slopes[row, joint] + (slopes[row, gear] if gear >= 0 else 0.0)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def _settle_state(fx, dx, fast, slopes, encoders, x):
     """Put `fast` states where their rates dx are zero, and angles where sensors go on showing the
     same. Nothing moves where there are no finite rates: the simulation fails by itself.
@@ -127,7 +133,7 @@ def _settle_state(fx, dx, fast, slopes, encoders, x):
     for row, joint, gear in encoders:
         shift = 0.0
         for i in range(len(fast)):
-            shift += slopes[row, fast[i]] * moved[i] / slopes[row, joint]
+            shift += slopes[row, fast[i]] * moved[i] / _by_turn(slopes, row, joint, gear)
         x[joint] -= shift
         if gear >= 0:
             x[gear] -= shift
@@ -156,7 +162,8 @@ def _settle_tangents(fx, fp, fast, columns, slopes, encoders, s):
         for c in range(ns):
             shift = 0.0
             for i in range(len(fast)):
-                shift += slopes[row, fast[i]] * (now[i, c] - earlier[i, c]) / slopes[row, joint]
+                shift += slopes[row, fast[i]] * (now[i, c] - earlier[i, c])
+            shift /= _by_turn(slopes, row, joint, gear)
             s[joint, c] -= shift
             if gear >= 0:
                 s[gear, c] -= shift
@@ -308,6 +315,7 @@ def _compare(functions, signals, time, x, s, u, p, measured, columns, picked, we
 AHEAD = (
     (_fast, (MATRIX, MATRIX, INTEGERS)),
     (_of_each_other, (MATRIX, INTEGERS)),
+    (_by_turn, (MATRIX, types.int64, types.int64, types.int64)),
     (_settle_state, (MATRIX, VECTOR, INTEGERS, MATRIX, INTEGER_TABLE, VECTOR)),
     (_settle_tangents, (MATRIX, MATRIX, INTEGERS, INTEGERS, MATRIX, INTEGER_TABLE, MATRIX)),
     (
@@ -370,7 +378,7 @@ def _put_behind_sensors(
                 break
         if len(columns):
             model.module.output_jacobian(run.time[0], x, run.held_inputs[0], p, yx, yp)
-            slope = yp[shown, columns] / yx[shown, angle_states[0]]
+            slope = yp[shown, columns] / yx[shown, angle_states].sum()
             s[angle_states, : len(columns)] -= slope
 
 

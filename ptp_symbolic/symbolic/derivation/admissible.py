@@ -9,6 +9,7 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import Platform, naming_file
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.effect_interface.conditions import Requirement
+from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.bodies import Body
 
 SLACK = 1e-9
@@ -72,6 +73,13 @@ def _refuse_impossible_tensor(
 def _refuse_massless(
     equations: Equations, values: Mapping[sp.Symbol, sp.Float], declared: Collection[str]
 ) -> None:
+    for k, rate in enumerate(equations.rates):
+        axis = kinematics.place_of(rate)
+        if axis.startswith("gear_") and equations.mass_matrix[k, k] == 0:
+            raise InputError(
+                f"Nothing turns before the shaft or gap on axis '{axis.removeprefix('gear_')}':"
+                " declare its dc_motor, or rotor_inertia where its torque is the input."
+            )
     known = {**values, **dict.fromkeys(equations.coordinates, sp.Float(ANGLE))}
     for symbol, term in equations.terms:
         known[symbol] = term.subs(known)

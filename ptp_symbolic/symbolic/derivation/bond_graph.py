@@ -247,6 +247,11 @@ def _effect(found: _Parts, effect: Effect, own: Contribution) -> None:
             (given,) = (t for t in found.machine.transmissions if t.axis == shaft.axis)
             _shaft(found, given, effect.title, ledger)
         return
+    for rate, inertia in own.inertias.items():
+        stored, law = Ledger(stored=found.resolve(inertia) * rate**2 / 2), found.resolve(inertia)
+        axis = kinematics.place_of(rate).removeprefix("gear_")
+        node = Node(f"inertia_{key}", INERTIA, law, f"{effect.title}, {axis} axis", axis, stored)
+        found.add(node, {rate: law * acceleration(rate)})
     efforts = {rate: -found.resolve(torque) for rate, torque in own.torques.items()}
     potential = found.resolve(own.potential)
     for coordinate, rate in found.rate_of.items():
@@ -265,7 +270,7 @@ def _effect(found: _Parts, effect: Effect, own: Contribution) -> None:
 
 
 def _own_ledger(found: _Parts, effect: Effect, own: Contribution) -> Ledger:
-    bare = replace(own, drives=())
+    bare = replace(own, drives=(), inertias={})
     ledger = ledger_of(bare, found.contributions.drive_rate)
     stored, power_in, dissipated = map(found.resolve, ledger.parts)
     return Ledger(stored, power_in + sp.diff(stored, TIME), dissipated)
@@ -370,7 +375,7 @@ def _drive(found: _Parts, drive: Drive) -> None:
 
 def _gears(found: _Parts, drive: Drive, effort: sp.Expr) -> None:
     """Transformers from the rotor to the gear output, one for every factor of the ratio."""
-    axis, rate = drive.axis, found.contributions.drive_rate(drive)
+    axis, rate = drive.axis, found.contributions.drive_rate(drive.axis)
     moduli = _stages(found, found.resolve(drive.ratio))
     before, flow = f"rotor_{axis}", found.resolve(drive.speed)
     for number, modulus in enumerate(moduli):
@@ -432,11 +437,12 @@ def _friction_titles(found: _Parts, rate: sp.Symbol) -> str:
 def _sources(found: _Parts) -> None:
     """Torque inputs, and motions that are prescribed."""
     for axis in found.machine.rigid.axes:
-        torque, rate = found.contributions.input_torque(axis), kinematics.rate(axis)
+        torque, rate = found.contributions.input_torque(axis), found.contributions.drive_rate(axis)
         if torque != 0:
             ledger = Ledger(power_in=torque * rate)
             law = torque if torque.is_Symbol else real(f"T_input_{axis}")
-            meaning = f"input of the {axis} joint"
+            where = "joint" if rate == kinematics.rate(axis) else "gear output"
+            meaning = f"input of the {axis} {where}"
             kind = found.source_kind(torque)
             found.add(Node(f"input_{axis}", kind, law, meaning, axis, ledger), {rate: -torque})
     for rate, torque in found.machine.constraint_torques.items():

@@ -105,14 +105,21 @@ class Contributions:
         return {rate: i for c in self.by_effect for rate, i in c.prescribed.items()}
 
     def input_torque(self, axis: str) -> sp.Expr:
-        """Torque in N m that the input of `axis` puts on its joint; zero where it takes none."""
+        """Torque in N m that the input of `axis` exerts; zero where it takes none."""
         return self.resolve(self.values.get(quantity_symbol(TORQUES[0].format(axis=axis)), ZERO))
 
-    def drive_rate(self, drive: Drive) -> sp.Symbol:
-        """The rate that `drive` works on: of the gear output if it has its own, else the joint."""
-        if drive.axis in self.split_axes:
-            return kinematics.gear_rate(drive.axis)
-        return kinematics.rate(drive.axis)
+    def drive_rate(self, axis: str) -> sp.Symbol:
+        """The rate that a drive of `axis` works on, or its torque input: of the gear output if it
+        has its own, else of the joint.
+        """
+        if axis in self.split_axes:
+            return kinematics.gear_rate(axis)
+        return kinematics.rate(axis)
+
+    def inertia_on(self, rate: sp.Symbol) -> sp.Expr:
+        """Inertia in kg m^2 that effects put on a rate, apart from drives."""
+        own = (c.inertias.get(rate, ZERO) for c in self.by_effect)
+        return self.resolve(sum(own, ZERO))
 
 
 def _slopes(term: sp.Symbol, found: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, sp.Expr]:

@@ -28,7 +28,7 @@ class Mechanics:
 
 def driving_torque(drive: Drive, contributions: Contributions, coordinate: sp.Symbol) -> sp.Expr:
     """Torque in N m of `drive` on its row, less what its own inertia takes where it changes."""
-    inertia, rate = contributions.resolve(drive.inertia), contributions.drive_rate(drive)
+    inertia, rate = contributions.resolve(drive.inertia), contributions.drive_rate(drive.axis)
     slope = sp.diff(inertia, coordinate)
     for term in contributions.terms:
         if slope_symbol(term, coordinate) in contributions.terms:
@@ -136,13 +136,13 @@ def _driven_by(
 ) -> tuple[sp.Expr, sp.Expr]:
     """Inertia and torque of what drives `rate`: a drive, the shaft before a joint, or an input."""
     for drive in contributions.drives:
-        if contributions.drive_rate(drive) == rate:
+        if contributions.drive_rate(drive.axis) == rate:
             torque = driving_torque(drive, contributions, coordinate)
             return contributions.resolve(drive.inertia), torque
-    axis = kinematics.place_of(rate)
+    axis, inertia = kinematics.place_of(rate), contributions.inertia_on(rate)
     if axis in contributions.split_axes:
-        return ZERO, contributions.resolve(quantity(f"shaft_torque_{axis}"))
-    return ZERO, contributions.input_torque(axis)
+        return inertia, contributions.resolve(quantity(f"shaft_torque_{axis}"))
+    return inertia, contributions.input_torque(axis.removeprefix("gear_"))
 
 
 def _refuse_second(friction: Friction, frictions: Iterable[Friction]) -> None:

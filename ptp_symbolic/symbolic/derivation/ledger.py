@@ -6,7 +6,7 @@ import sympy as sp
 
 from ptp_symbolic.symbolic.derivation.contributions import Contributions
 from ptp_symbolic.symbolic.derivation.equations import Ledger
-from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, Drive, Friction
+from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, Friction
 from ptp_symbolic.symbolic.effect_interface.place import slide
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.bodies import RigidEquations
@@ -26,7 +26,7 @@ def energy_ledger(
     parameters say: the partial derivative by time of a potential. `rigid` has the energies of the
     bodies relative to a base whose motion is measured, as if it stood still.
     """
-    powers = (contributions.input_torque(axis) * kinematics.rate(axis) for axis in axes)
+    powers = (contributions.input_torque(a) * contributions.drive_rate(a) for a in axes)
     total = Ledger(rigid.kinetic + rigid.potential, sum(powers, ZERO))
     for contribution in contributions.by_effect:
         total += ledger_of(contribution, contributions.drive_rate)
@@ -36,15 +36,17 @@ def energy_ledger(
     return Ledger(stored, power_in + sp.diff(stored, kinematics.TIME), dissipated)
 
 
-def ledger_of(contribution: Contribution, rate_of: Callable[[Drive], sp.Symbol]) -> Ledger:
-    """The ledger of one effect, without its frictions and shafts; `rate_of` tells on which rate a
-    drive works. What its torques take out of the machine, and do not store, is dissipated.
+def ledger_of(contribution: Contribution, rate_of: Callable[[str], sp.Symbol]) -> Ledger:
+    """The ledger of one effect, without its frictions and shafts; `rate_of` tells on which rate the
+    drive of an axis works. What its torques take out of the machine and do not store is lost.
     """
     stored, power_in, dissipated = contribution.potential + contribution.stored, ZERO, ZERO
     for drive in contribution.drives:
-        stored += drive.stored + drive.inertia * rate_of(drive) ** 2 / 2
+        stored += drive.stored + drive.inertia * rate_of(drive.axis) ** 2 / 2
         power_in += drive.power_in
         dissipated += drive.dissipated
+    for rate, inertia in contribution.inertias.items():
+        stored += inertia * rate**2 / 2
     power = sum((torque * rate for rate, torque in contribution.torques.items()), ZERO)
     return Ledger(stored, power_in, dissipated - power - _charging(contribution))
 

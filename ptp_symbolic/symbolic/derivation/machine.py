@@ -180,15 +180,16 @@ def _mechanics(
     still = rigid.forcing.xreplace(base.at_rest)
     forcing = sp.Matrix([*still, *([0] * len(gears))])
     row = {symbol: index for index, symbol in enumerate(rates)}
-    torques = [(kinematics.rate(axis), contributions.input_torque(axis)) for axis in joints]
+    torques = [(contributions.drive_rate(a), contributions.input_torque(a)) for a in joints]
     torques += base.torques.items()
     torques += [torque for t in transmissions for torque in t.torques]
     torques += [torque for c in contributions.by_effect for torque in c.torques.items()]
     for drive in contributions.drives:
-        rate = contributions.drive_rate(drive)
-        inertia = contributions.resolve(drive.inertia)
-        mass[row[rate], row[rate]] += inertia
+        rate = contributions.drive_rate(drive.axis)
+        mass[row[rate], row[rate]] += contributions.resolve(drive.inertia)
         torques.append((rate, driving_torque(drive, contributions, coordinates[row[rate]])))
+    for rate in rates:
+        mass[row[rate], row[rate]] += contributions.inertia_on(rate)
     for symbol, torque in torques:
         forcing[row[symbol]] += contributions.resolve(torque)
     potential = contributions.resolve(sum((c.potential for c in contributions.by_effect), ZERO))

@@ -103,7 +103,7 @@ def _own_sites(own: Contribution, place: Place) -> Iterator[Site]:
         yield Site(MOTOR, drive.axis)
     for axis in (*(s.axis for s in own.shafts), *(p.axis for p in own.plays)):
         yield Site(SHAFT, axis)
-    for rate in (*(f.rate for f in own.frictions), *own.torques, *own.prescribed):
+    for rate in (*(f.rate for f in own.frictions), *own.torques, *own.inertias, *own.prescribed):
         yield _of_motion(rate)
     moved = own.potential.free_symbols
     for axis in place.axes:

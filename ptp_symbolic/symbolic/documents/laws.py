@@ -230,6 +230,8 @@ def _rows(
     for drive in added.drives:
         yield row("torque and inertia at the gear output", _torque(drive.axis), drive.torque)
         yield row("inertia", real(f"J_drive_{drive.axis}"), drive.inertia)
+    for rate, inertia in added.inertias.items():
+        yield row("inertia on the rate", rate, inertia)
     for body in added.bodies:
         for symbol, value in _body(body):
             yield row("mass, centre of mass and inertia of the body", symbol, value)

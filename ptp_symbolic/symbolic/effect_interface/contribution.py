@@ -237,7 +237,7 @@ class Contribution:
     `potential` is an energy of the coordinates, whose gradient acts as torques; `stored` an energy
     of the effect's own states, which its `torques` charge and discharge; what else those take out
     is dissipated. Supplied is the `power_in` of drives alone: a torque that no input drives has a
-    potential. `delays` hold back the
+    potential. `inertias` in kg m^2 turn with a rate. `delays` hold back the
     inputs of an axis. `prescribed` gives joint rates an acceleration as input, in place of the
     torque on the joint; `commands` gives an axis other inputs than those of its drive; `inputs` are
     those that drive no axis, such as a temperature. What a sensor shows is the quantity
@@ -251,6 +251,7 @@ class Contribution:
     potential: sp.Expr = ZERO
     stored: sp.Expr = ZERO
     torques: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    inertias: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     frictions: tuple[Friction, ...] = ()
     shafts: tuple[Shaft, ...] = ()
     plays: tuple[Play, ...] = ()

@@ -62,8 +62,9 @@ class Structure:
 
     `needs` are quantities that a declared effect must define on the axis. Of the effects named in
     `in_place_of`, one must be declared on the axis: the effect takes its place. Those named in
-    `along_with` come with it where they are not declared. It cannot stand beside those named in
-    `excluded_by`. A fit of it is led astray where one of those named in `beside` is missing too.
+    `along_with` come with it where they are not declared and have what they need. It cannot stand
+    beside those named in `excluded_by`. A fit of it is led astray where one of those named in
+    `beside` is missing too.
     """
 
     needs: tuple[str, ...] = ()

@@ -41,6 +41,7 @@ from ptp_symbolic.symbolic.effects.lugre_friction import LUGRE_FRICTION
 from ptp_symbolic.symbolic.effects.magnetic_detent import MAGNETIC_DETENT
 from ptp_symbolic.symbolic.effects.maxwell_slip_friction import MAXWELL_SLIP_FRICTION
 from ptp_symbolic.symbolic.effects.measurement_lag import MEASUREMENT_LAG
+from ptp_symbolic.symbolic.effects.motor_encoder import MOTOR_ENCODER
 from ptp_symbolic.symbolic.effects.pan_com_offset import PAN_COM_OFFSET
 from ptp_symbolic.symbolic.effects.payload import PAYLOAD
 from ptp_symbolic.symbolic.effects.payload_com_offset import PAYLOAD_COM_OFFSET
@@ -52,6 +53,7 @@ from ptp_symbolic.symbolic.effects.pwm_drive import PWM_DRIVE
 from ptp_symbolic.symbolic.effects.quadratic_drag import QUADRATIC_DRAG
 from ptp_symbolic.symbolic.effects.rate_dependent_breakaway import RATE_DEPENDENT_BREAKAWAY
 from ptp_symbolic.symbolic.effects.rigid_bodies import RIGID_BODIES
+from ptp_symbolic.symbolic.effects.rotor_inertia import ROTOR_INERTIA
 from ptp_symbolic.symbolic.effects.shaft_compliance import SHAFT_COMPLIANCE
 from ptp_symbolic.symbolic.effects.shear_thinning_friction import SHEAR_THINNING_FRICTION
 from ptp_symbolic.symbolic.effects.stribeck_exponent import STRIBECK_EXPONENT
@@ -99,6 +101,7 @@ PACKAGED: tuple[Effect, ...] = (
     GEAR_ECCENTRICITY,
     DC_MOTOR,
     LINEAR_ACTUATOR,
+    ROTOR_INERTIA,
     PID_CONTROLLER,
     CONTROLLER_DELAY,
     PWM_DRIVE,
@@ -114,6 +117,7 @@ PACKAGED: tuple[Effect, ...] = (
     CONSTANT_TORQUE,
     INPUT_DELAY,
     IMU,
+    MOTOR_ENCODER,
     ENCODER_ECCENTRICITY,
     MEASUREMENT_LAG,
     ENCODER_QUANTIZATION,

@@ -23,7 +23,7 @@ OPEN_GAP = replace(GAP, lower=1e-6, vanishes=None, linear=OPEN_LINEAR)
 RESTITUTION = Parameter(
     "e_gap_{axis}", "1", 0.5, 0.0, 1.0, "restitution: speed apart after a strike, per speed before"
 )
-DRIVE = ("winding_resistance_{axis}",)
+MOTOR = "rotor_inertia"  # where a torque drives the axis
 LEANING = ("constant_torque", "cable_spring")  # a small one decides on which face a gear lies
 EXPERIMENT = (
     "Reverse slowly with and without a known preload torque on the joint: backlash disappears under"
@@ -55,7 +55,7 @@ def _kind(
         contribute=contribute,
         structural=True,
         splits_axis=True,
-        structure=Structure(needs=DRIVE, beside=LEANING) if bounces else None,
+        structure=Structure(along_with=(MOTOR,), beside=LEANING) if bounces else None,
         separating_experiment=EXPERIMENT,
     )
 
@@ -68,7 +68,7 @@ BACKLASH = Effect(
     parameters=(GAP,),
     contribute=_contribute,
     needs=("half_gap_{axis}",),
-    structure=Structure(needs=DRIVE, along_with=("shaft_compliance",), beside=LEANING),
+    structure=Structure(along_with=("shaft_compliance", MOTOR), beside=LEANING),
     separating_experiment=EXPERIMENT,
     kinds=(
         _kind("elastic_impact", "backlash with elastic impact", "Newton's restitution", True),

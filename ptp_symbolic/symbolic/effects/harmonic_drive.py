@@ -55,7 +55,7 @@ HARMONIC_DRIVE = Effect(
     splits_axis=True,
     dissipative=True,
     structure=Structure(
-        needs=("winding_resistance_{axis}",), excluded_by=("shaft_compliance", "backlash")
+        along_with=("rotor_inertia",), excluded_by=("shaft_compliance", "backlash")
     ),
     separating_experiment="Lock the motor and load the joint in slow loops of several sizes: the"
     " twist stiffens, and every loop leaves an area.",

@@ -37,7 +37,7 @@ SHAFT_COMPLIANCE = Effect(
     structural=True,
     splits_axis=True,
     dissipative=True,
-    structure=Structure(needs=("winding_resistance_{axis}",)),
+    structure=Structure(along_with=("rotor_inertia",)),
     separating_experiment="Lock the motor and strike the joint, or excite with a 10 to 40 Hz chirp:"
     " a shaft resonates, a delay only turns the phase, and a gap rings at no fixed frequency.",
 )
