@@ -170,7 +170,7 @@ RULES = (
         "More than half of a member is found without any one run.",
         _in("confirm", "depends_on_run"),
         _always(None),
-        "safety: an effect that one run alone shows",
+        "safety: an effect that runs contradict (not where one run holds all that is known of it)",
     ),
     Rule(
         "law of the speed",

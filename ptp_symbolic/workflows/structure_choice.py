@@ -25,6 +25,7 @@ from ptp_symbolic.numeric.diagnose.gain import (
 )
 from ptp_symbolic.numeric.diagnose.groups import Alternative, confusable
 from ptp_symbolic.numeric.diagnose.noise_floor import leaves_noise_alone, noise_floor_of
+from ptp_symbolic.numeric.diagnose.proposals import ProposedSet, declared_start
 from ptp_symbolic.numeric.diagnose.refits import is_near_noise_floor
 from ptp_symbolic.numeric.diagnose.search import search
 from ptp_symbolic.numeric.diagnose.stepwise import Search
@@ -40,8 +41,6 @@ from ptp_symbolic.numeric.diagnose.structures import (
 )
 from ptp_symbolic.numeric.diagnose.summary import ranking_row
 from ptp_symbolic.numeric.diagnose.verdict import (
-    PARTLY,
-    UNEXPLAINED,
     Verdict,
     decide,
     word_of,
@@ -176,7 +175,9 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     order = fitted.order
     rest = [s for s in fitted.every if s not in order]
     alike = _alike(chosen, fitted)
-    rows = tuple(_row(s, fitted.declared, chosen, refused, alike) for s in [*order, *rest])
+    own = set(effect_keys(platform))
+    beside = [e.title for e in fitted.declared.problem.model.effects if e.key not in own]
+    rows = tuple(_row(s, fitted.declared, chosen, refused, alike, beside) for s in [*order, *rest])
     is_cut_short = is_late or any(s.found.is_cut_short for s in [terms, *outcomes])
     return Choice(chosen, terms.decided, rows, {**untried, **fitted.failed}, is_cut_short)
 
@@ -348,8 +349,9 @@ def _searched(
     """
     begun, is_alone = platform, False
     if structure is not None:
-        is_alone = logs.allowance.is_out_of_time or _is_enough(structure, platform)
-        if is_alone and _is_all_its_own(structure, platform):
+        is_all_its_own = len(structure.problem.model.effects) == len(platform.effects)
+        is_alone = logs.allowance.is_out_of_time or (structure.is_noise_alone and is_all_its_own)
+        if is_alone and is_all_its_own:
             return Searched(platform, structure, structure.problem, structure.without_terms())
         values = structure.trial.values
         if begin is not None:
@@ -372,17 +374,19 @@ def _searched(
         problem,
         free=tuple(replace(f, declared_start=declared_starts[f.name]) for f in problem.free),
     )
-    return Searched(platform, structure, problem, search(problem, brief=brief))
+    first = [] if structure is None else _beside_structure(structure, problem)
+    return Searched(platform, structure, problem, search(problem, first, brief=brief))
 
 
-def _is_enough(structure: FittedStructure, platform: Platform) -> bool:
-    """Whether a structure leaves noise alone with no effect beside those of its `platform`."""
-    return structure.is_noise_alone and _is_all_its_own(structure, platform)
-
-
-def _is_all_its_own(structure: FittedStructure, platform: Platform) -> bool:
-    """Whether a structure was fitted with no effect beside those of its `platform`."""
-    return len(structure.problem.model.effects) == len(platform.effects)
+def _beside_structure(structure: FittedStructure, problem: SearchProblem) -> list[ProposedSet]:
+    """The candidates of a search that a structure was fitted beside, at their values; no set where
+    there are none.
+    """
+    beside = {effect.key for effect in structure.problem.model.effects}
+    own = {c.key: c for c in problem.candidates if c.key in beside}  # the fullest form is the last
+    start = declared_start(problem)
+    values = {name: structure.trial.values.get(name, value) for name, value in start.items()}
+    return [ProposedSet(tuple(own.values()), values)] if own else []
 
 
 def _chosen(
@@ -398,7 +402,7 @@ def _chosen(
         assert structure is not None
         final = outcome.verdict.final
         without = on_runs_of(terms.found.problem, terms.verdict.final, final.fit.runs)
-        quiet = outcome.verdict.word not in (PARTLY, UNEXPLAINED)
+        quiet = not outcome.verdict.leaves_more
         problem = outcome.found.problem
         earned, why = why_rejected(structure, problem, final, without, quiet, len(others))
         part = part_as_good(outcome, outcomes, others) if why is None else None
@@ -472,7 +476,7 @@ def _beside(terms: Outcome, as_good: Sequence[Alternative]) -> Outcome:
         key: tuple(sorted({*verdict.confusable.get(key, ()), *found[key]}))
         for key in verdict.final.keys
     }
-    quiet = verdict.word not in (PARTLY, UNEXPLAINED)
+    quiet = not verdict.leaves_more
     word = word_of(verdict.final, merged, quiet)
     return replace(terms, verdict=replace(verdict, confusable=merged, word=word))
 
@@ -496,7 +500,7 @@ def _with_structure(
     names = {key for s in equals for key in s.keys if key not in structure.keys}
     group = {c.key: tuple(sorted(names)) for c in own}
     merged = {**verdict.confusable, **group}
-    quiet = verdict.word not in (PARTLY, UNEXPLAINED)
+    quiet = not verdict.leaves_more
     before = _declared_validation(terms, verdict.after, logs)
     declared = on_runs_of(terms.found.problem, terms.verdict.declared, final.fit.runs)
     gains = {**verdict.gains, **dict.fromkeys([c.key for c in own], earned)}
@@ -513,6 +517,7 @@ def _with_structure(
             closest=None,
             before=before,
             held_out=held_out_gain(verdict.after, before),
+            is_quiet=quiet,
         ),
     )
 
@@ -521,7 +526,7 @@ def _alike(outcome: Outcome, fitted: Fitted) -> list[FittedStructure]:
     """The structures that the one of an outcome is not told from."""
     if outcome.structure is None:
         return []
-    quiet = outcome.verdict.word not in (PARTLY, UNEXPLAINED)
+    quiet = not outcome.verdict.leaves_more
     return alternatives(outcome.structure, fitted.every, None if quiet else fitted.declared)
 
 
@@ -544,9 +549,10 @@ def _row(
     chosen: Outcome,
     refused: Mapping[FittedStructure, str],
     alike: Sequence[FittedStructure],
+    beside: Sequence[str],
 ) -> dict[str, Any]:
-    """A row of the ranking for a structure without terms; `alike` are the alternatives of the
-    chosen one.
+    """A row of the ranking for a structure before a search for terms; `alike` are the alternatives
+    of the chosen one, `beside` the titles of what all were fitted with.
     """
     failed = structure.trial.fit.failed
     accepted = structure is chosen.structure
@@ -555,12 +561,13 @@ def _row(
     elif failed:
         why = f"the fit failed: {failed}"
     elif structure in alike and structure not in refused:
-        why = "cannot be told from the chosen structure by these logs, both without terms"
+        why = "cannot be told from the chosen structure by these logs, before terms were searched"
     else:
         why = refused.get(structure) or _why_not_followed(structure, declared, chosen.structure)
     earned = None if failed else gain_over(structure, declared)
     row = ranking_row(structure.added, structure.trial, earned, accepted, why)
     title = " and ".join(c.title for c in structure.added if c.free)
+    title += f", beside {' and '.join(beside)}" if beside else ""
     return {**row, "title": title, "structure": list(structure.keys)}
 
 

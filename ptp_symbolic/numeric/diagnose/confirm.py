@@ -24,7 +24,6 @@ from ptp_symbolic.numeric.diagnose.fitted_model import (
     tolerance_for,
 )
 from ptp_symbolic.numeric.diagnose.gain import (
-    Gain,
     gain,
     gain_in_innovations,
     held_out_fit,
@@ -52,6 +51,7 @@ from ptp_symbolic.numeric.diagnose.stepwise import (
     Step,
     StepwiseSearch,
     begun_in_form,
+    looked_at,
     simplified,
     step_of,
 )
@@ -492,7 +492,7 @@ def _weakness(
     refit = partial(_without_run, stepwise.problem, trial)
     for step in by_gain:
         if not stepwise.is_needed(step):
-            return Weakness(step, _too_little(step.gain, stepwise.problem.material))
+            return Weakness(step, _too_little(stepwise.problem, step))
         if is_within_noise_of_inputs(step.without, by_inputs):
             return Weakness(step, "without it the residual is within the noise of the inputs")
         member = with_what_needs_it(step.candidate, trial.candidates)
@@ -526,11 +526,17 @@ def _doubt_beside_residual(problem: SearchProblem, trial: FittedModel, step: Ste
     return None
 
 
-def _too_little(earned: Gain, material: float) -> str:
-    """Why a gain is too small for a name, which requires a `material` share."""
+def _too_little(problem: SearchProblem, step: Step) -> str:
+    """Why the gain of a step is too small for a name."""
+    earned, material = step.gain, problem.material
     if earned.share <= 0.0:
         return "does not improve the prediction of blocks left out"
     if earned.share < material:
         share = f"{100.0 * earned.share:.0f} %"
         return f"reduces the sum of squares by {share} only; {100.0 * material:g} % are required"
-    return f"{earned.in_words}, which is not significant"
+    tests = looked_at(problem.candidates, [step.candidate])
+    chance = earned.smallest_chance(step.p_value)
+    return (
+        f"{earned.in_words}, which is not significant: chance {chance:.2g}, of {tests} compared"
+        f" {FALSE_ALARM / tests:.2g} is required"
+    )

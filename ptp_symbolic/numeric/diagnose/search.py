@@ -242,7 +242,7 @@ def extended(
             break
         stepwise.tried.others.append(best)
         full = stepwise.completed(grown)
-        if gain(grown, best).share >= MOST:  # one that gains less has been restarted before
+        if gain(grown, best).share >= MOST:  # the best of those that gain less has been
             full = stepwise.restarted(full)
         pruned, fewer = stepwise.pruned(full)
         same = pruned.keys == best.keys
@@ -304,13 +304,18 @@ def by_effects_alone(
     return other, fewer
 
 
-def search(problem: SearchProblem, *, brief: bool = False) -> Search:
+def search(
+    problem: SearchProblem, first: Sequence[ProposedSet] = (), *, brief: bool = False
+) -> Search:
     """Find the set of candidates that the training runs support; once its allowance is over, with
-    what has been tried by then. A `brief` search ends with what is found soon: enough to see
-    whether any set fits as well as a model whose residual is noise alone.
+    what has been tried by then. Sets that are known to fit are tried `first`. A `brief` search ends
+    with what is found soon: enough to see whether any set fits as well as a model whose residual is
+    noise alone.
     """
     problem.progress("comparing all sets of effects along the measured motion")
     proposals = propose(problem)
+    if first:
+        proposals = replace(proposals, sets=(*first, *proposals.sets), is_any_preferred=True)
     problem = replace(problem, candidates=placed_by_rows(problem.candidates, proposals))
     problem = with_fewer_samples(problem, proposals.start)
     problem.progress("fitting the declared model")
@@ -508,7 +513,7 @@ def _ended(stepwise: StepwiseSearch, best: FittedModel, steps: list[Step]) -> Se
     is_cut_short, best = stepwise.problem.is_over, stepwise.sharpened(simplified(stepwise, best))
     if stepwise.is_white(best):
         without = {s.candidate.key: s.without for s in steps}
-    else:  # the search was brief
+    else:  # the steps were brief, or there are none
         without = {c.key: stepwise.without(best, c) for c in best.candidates}
     members = tuple(step_of(best, c, without[c.key]) for c in best.candidates)
     return Search(

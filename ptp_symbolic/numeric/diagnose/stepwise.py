@@ -63,7 +63,7 @@ from ptp_symbolic.numeric.identify.evidence import Deferred
 
 @dataclass(frozen=True, eq=False)
 class Tried:
-    """Trials that are not chosen, `others`; those fitted to their end; and by the forms of its
+    """Trials that were passed by, `others`; those fitted to their end; and by the forms of its
     candidates (see `forms_of`) the end of every set that was restarted from the rows.
     """
 
@@ -323,7 +323,7 @@ class StepwiseSearch:
         """The trial refitted without one of its candidates, and without what needs it; or an
         earlier fit of that set, if it is better: a candidate gains no more than what it adds to the
         best fit without it. One that gains next to nothing after a few iterations gains no more at
-        their end, and one that gains nearly all still does: these fits are not brought there.
+        their end, and one that gains most still does: these fits are not brought there.
         `briefly` it is not restarted either.
         """
         kept = without_member(trial.candidates, candidate)

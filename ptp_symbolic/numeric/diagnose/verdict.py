@@ -94,7 +94,8 @@ class Verdict:
     is confirmed, `refused` says why candidates that gained were not named. `floor` is that of
     `final`; `before` and `after` are the validation runs by the declared and by the final model,
     `usual` [ny] is the residual of the latter that decides, over the largest noise (see
-    `usual_residual`).
+    `usual_residual`). The model `is_trained_to_noise` where training runs show noise alone, and
+    `is_quiet` where the validation runs do.
     """
 
     word: str
@@ -112,6 +113,8 @@ class Verdict:
     after: Fit
     usual: FloatArray
     held_out: Gain | None
+    is_trained_to_noise: bool
+    is_quiet: bool
 
     @property
     def is_along_motion(self) -> bool:
@@ -182,34 +185,39 @@ def _settled(
     while trial.candidates:
         alternatives = refitted_alternatives(stepwise, trial, fit)
         better = better_alternative(trial, alternatives, stepwise.problem.material)
-        if better is not None:
+        other = smaller_alternative(stepwise, trial, alternatives) if better is None else None
+        other = other if better is None else stepwise.restarted(better)
+        if other is not None:
             stepwise.tried.others.append(trial)
-            trial, steps, fit = confirmed(
-                stepwise, *shortened(stepwise, stepwise.restarted(better)), refused
+        else:
+            trial, steps, fit, alternatives = simplest_alternative(
+                stepwise, trial, steps, fit, alternatives
             )
-            alternatives = []
-            continue
-        leaner = smaller_alternative(stepwise, trial, alternatives)
-        if leaner is not None:
-            stepwise.tried.others.append(trial)
-            trial, steps, fit = confirmed(stepwise, *shortened(stepwise, leaner), refused)
-            alternatives = []
-            continue
-        trial, steps, fit, alternatives = simplest_alternative(
-            stepwise, trial, steps, fit, alternatives
-        )
-        floor = noise_floor_of(stepwise.problem, trial, stepwise.propagated)
-        step = ambiguous_value(trial, steps, confusable(trial, alternatives), floor)
-        why = "alternatives predict as well, and the residual exceeds the noise"
-        if step is None:
-            step = rejected_on_validation(stepwise.problem, trial, steps)
-            why = "the validation runs are predicted significantly better without it"
-        if step is None:
-            break
-        refused.note(step.candidate.key, why)
-        trial, steps, fit = confirmed(stepwise, *shortened(stepwise, step.without), refused)
+            rejected = _rejected(stepwise, trial, steps, alternatives)
+            if rejected is None:
+                break
+            step, why = rejected
+            refused.note(step.candidate.key, why)
+            other = step.without
+        trial, steps, fit = confirmed(stepwise, *shortened(stepwise, other), refused)
         alternatives = []
     return trial, steps, alternatives
+
+
+def _rejected(
+    stepwise: StepwiseSearch,
+    trial: FittedModel,
+    steps: Sequence[Step],
+    alternatives: Sequence[Alternative],
+) -> tuple[Step, str] | None:
+    """A member that its alternatives or the validation runs speak against, and why; or None."""
+    floor = noise_floor_of(stepwise.problem, trial, stepwise.propagated)
+    step = ambiguous_value(trial, steps, confusable(trial, alternatives), floor)
+    if step is not None:
+        return step, "alternatives predict as well, and the residual exceeds the noise"
+    step = rejected_on_validation(stepwise.problem, trial, steps)
+    why = "the validation runs are predicted significantly better without it"
+    return None if step is None else (step, why)
 
 
 @dataclass(frozen=True, eq=False)
@@ -295,6 +303,8 @@ def _judged(
         after,
         usual,
         held_out,
+        at_noise,
+        quiet,
     )
 
 
@@ -341,7 +351,7 @@ VALIDATION = (
 )
 ALIKE = "alternatives that predict as well in its place"
 BESIDE = ", with what was found beside it"
-COMPARED_ALONE = ", each without what was found beside it"
+COMPARED_ALONE = ", as they were before the search for terms"
 
 
 def reasons(found: Search, verdict: Verdict, compared: int) -> list[dict[str, Any]]:
@@ -359,10 +369,10 @@ def reasons(found: Search, verdict: Verdict, compared: int) -> list[dict[str, An
             tests = _tests(found, step.candidate, compared)
             rows += _of_gain(found, verdict, step.candidate.key, step.gain, step.p_value, tests)
     if verdict.held_out is not None:
-        least = MOST if verdict.leaves_more else found.problem.material
+        least = found.problem.material if verdict.is_quiet else MOST
         rows.append(_row(None, VALIDATED, verdict.held_out.share, "at_least", least))
         unusual = exceeds_usual_noise(verdict.final, verdict.floor)
-        if not verdict.leaves_more and must_gain_clearly(verdict.held_out, unusual):
+        if verdict.is_quiet and must_gain_clearly(verdict.held_out, unusual):
             chance = verdict.held_out.smallest_chance(1.0)
             rows.append(_row(None, VALIDATED_BY_CHANCE, chance, "at_most", FALSE_ALARM))
     trained = normalised_residual(verdict.final.fit) / verdict.floor.most
@@ -394,7 +404,7 @@ def _of_effect(
 def _of_gain(
     found: Search, verdict: Verdict, key: str, gain: Gain, by_values: float, tests: int
 ) -> list[dict[str, Any]]:
-    least = MOST if verdict.leaves_more else 0.0
+    least = 0.0 if verdict.is_trained_to_noise else MOST
     return [
         _row(key, SHARE, gain.share, "at_least", found.problem.material),
         _row(key, LOWER_END, gain.lower, "at_least", least),
