@@ -493,7 +493,7 @@ def _row(search: Search, found: Verdict, trial: FittedModel) -> dict[str, Any]:
     accepted = bool(found.final.candidates) and trial.keys == found.compared.keys
     elsewhere = accepted and found.is_along_motion  # that fit is not the best one of outputs
     earned = None if elsewhere else gain(trial, search.declared)
-    return ranking_row(trial.candidates, trial, earned, accepted, _why(search, found, trial))
+    return ranking_row(trial.candidates, trial, earned, accepted, _why(found, trial))
 
 
 def ranking_row(
@@ -544,7 +544,7 @@ def _unfitted(search: Search, forms: Sequence[Candidate]) -> dict[str, Any]:
     }
 
 
-def _why(search: Search, found: Verdict, trial: FittedModel) -> str:
+def _why(found: Verdict, trial: FittedModel) -> str:
     if found.final.candidates and trial.keys == found.compared.keys:
         if found.is_along_motion:
             return "every effect in it is significant in the torque along the measured motion"
@@ -554,7 +554,7 @@ def _why(search: Search, found: Verdict, trial: FittedModel) -> str:
         noise = "its residual is within the propagated noise of the inputs"
         return noise if other.is_within_input_noise else "predicts as well as the accepted set"
     refused = [f"{key} {why}" for key, why in found.refused.items() if key in trial.keys]
-    if refused and set(trial.keys) <= set(search.chosen.keys):
+    if refused and set(trial.keys) <= {*found.compared.keys, *found.refused}:
         return "; ".join(refused)
     if found.final.candidates and set(found.compared.keys) < set(trial.keys):
         return "what it adds to the accepted set reduces the error too little"
