@@ -157,6 +157,8 @@ def _print_fit(summary: Mapping[str, Any]) -> None:
         if before is None
         else f"{before['total'][key]:.4g} at the start values"
     )
+    if before is not None and after > before["total"][key]:
+        begun += "; a fit counts stretches that are far off less, so that this may rise"
     advice = ""
     if summary["far_from_floor"]:
         is_odd = any(text.startswith("The residual is") for text in summary["remarks"])

@@ -217,4 +217,7 @@ def given_signals(
         _note_turns(
             f"{name} goes to", farthest, model.units[name], "a profile is in rad, not in deg"
         )
+    idle = [name for name in model.input_names if name not in signals]
+    if idle:
+        click.echo(f"Note: no --input for {', '.join(idle)}: zero.")
     return found, end

@@ -188,7 +188,9 @@ def _write_summary(machine: Any, plan: "SweepPlan", out: Path) -> None:
     files["summary.json"] = json.dumps(summary, indent=1) + "\n"
     write_files_atomically(out, files)
     failed = plan.samples - summary["status"].get("done", 0)
-    click.echo(f"{plan.samples} runs, {failed} failed: {out / 'trajectories'}")
+    why = ", ".join(f"{n} {word}" for word, n in summary["status"].items() if word != "done")
+    said = f" ({why}; what follows is of the others, the column `reason` says more)" if why else ""
+    click.echo(f"{plan.samples} runs, {failed} failed{said}: {out / 'trajectories'}")
     for name, found in summary["outputs"].items():
         low, high = found["quantiles"]["0.05"], found["quantiles"]["0.95"]
         click.echo(f"{name}: mean {found['mean']:.6g}, 90 % of runs in {low:.6g} to {high:.6g}")

@@ -1,6 +1,7 @@
 """Read a platform TOML into plain data, or refuse it in one line that names file and key."""
 
 import dataclasses
+import math
 import re
 import tomllib
 from pathlib import Path
@@ -201,6 +202,13 @@ def _parameters(given: object, file: str) -> tuple[ParameterDeclaration, ...]:
                 f"{file}: parameters.{name}: has {' and '.join(kinds) or 'no value'}; give exactly "
                 "one of value (known), start (free) and same_as (tied)."
             )
+    blank = [
+        name
+        for name, entry in entries.items()
+        if any(isinstance(entry.get(k), float) and math.isnan(entry[k]) for k in ("value", "start"))
+    ]
+    if blank:
+        raise InputError(f"{file}: parameters: nan is no value; give that of {', '.join(blank)}.")
     independent = {
         name: _independent(name, entry, f"{file}: parameters.{name}")
         for name, entry in entries.items()

@@ -31,6 +31,17 @@ def test_an_ordinary_log_gets_no_remark() -> None:
     assert remarks([log(MOVING)], PLATFORM) == ()
 
 
+@pytest.mark.parametrize(("factor", "counts"), [(0.5, 14400), (0.25, 28800), (4.0, 1800)])
+def test_steps_of_another_count_than_the_declared_one_are_noted(factor: float, counts: int) -> None:
+    step = factor * COUNT
+    (text,) = remarks([log(np.round(np.sin(2.0 * TIME) / step) * step)], PLATFORM)
+    assert f"{counts} per revolution; counts_per_revolution says 7200" in text
+
+
+def test_a_smooth_angle_has_no_count_to_compare() -> None:
+    assert remarks([log(np.round(np.sin(2.0 * TIME), 9))], PLATFORM) == ()
+
+
 def test_a_wrapped_angle_is_refused_with_its_time() -> None:
     turning = 4.0 * TIME + 2.0
     wrapped = np.angle(np.exp(1j * turning))

@@ -27,6 +27,7 @@ FEW_LEVELS = 5  # of a signal that is switched
 FASTEST = 50.0  # rad/s, 480 rpm: no joint of a platform turns as fast for long
 OFTEN = 0.95  # share of the samples below the rate that is compared with it
 WHOLE, MOST_WHOLE = 0.02, 0.99  # of a count: rounding of a written number; share of such samples
+PLAIN = (2, 3, 4, 5, 8, 10)  # ratios of a count to the declared one that are looked for
 JITTER = 0.2  # of the sampling period, rms
 
 
@@ -87,6 +88,7 @@ def remarks(logs: Sequence[Log], platform: Platform) -> tuple[str, ...]:
         found += _clock_remarks(log)
         found += [t for k, s in enumerate(outputs) for t in _jump_remarks(log, k, s)]
         found += [t for k, s in enumerate(outputs) for t in _unit_remarks(log, k, s)]
+        found += [t for k, s in enumerate(outputs) for t in _count_remarks(log, k, s)]
         found += [t for s in outputs for t in _interpolation_remarks(log, s)]
         found += [_thinning_remark(log.name, *thinned) for thinned in log.thinned.items()]
     return tuple(found)
@@ -164,6 +166,24 @@ def _unit_remarks(log: Log, column: int, signal: SignalDeclaration) -> list[str]
             ' the heading, or column_unit = "rad" in the platform file where it has no unit.'
         ]
     return []
+
+
+def _count_remarks(log: Log, column: int, signal: SignalDeclaration) -> list[str]:
+    """A position that steps by another count than the declared one: lines for quadrature counts, or
+    the encoder before a gear.
+    """
+    angle, count = log.outputs[:, column], signal.count
+    finer = () if _steps_by(angle, count, 1.0) else (1.0 / n for n in PLAIN)
+    factors = (*finer, *(float(n) for n in reversed(PLAIN) if not finer))
+    found = next((f for f in factors if _steps_by(angle, count, f)), None)
+    if found is None or count is None:
+        return []
+    step, word = count * found, "revolution" if signal.unit == "rad" else "metre"
+    whole = 2.0 * np.pi if signal.unit == "rad" else 1.0
+    return [
+        f"{log.name}: '{signal.column}' moves in steps of {step:.6g} {signal.unit},"
+        f" {whole / step:.6g} per {word}; counts_per_{word} says {whole / count:.6g}."
+    ]
 
 
 def _steps_by(angle: FloatArray, count: float | None, factor: float) -> bool:

@@ -1,5 +1,6 @@
 """Place the declared effects of a platform and check its parameters against them."""
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
@@ -31,7 +32,11 @@ def find_effect(identifier: str) -> Effect:
     for effect in catalogue():
         if effect.id == identifier:
             return effect
-    known = (effect.id for effect in catalogue())
+    words = {word for word in str(identifier).lower().split("_") if len(word) > 3}
+    titled = [
+        e for e in catalogue() if words & {*re.findall(r"\w+", e.title.lower())} - {"friction"}
+    ]
+    known = (effect.id for effect in titled or catalogue())
     raise unknown("effect", identifier, known, listing="`ptp-symbolic effects`")
 
 
@@ -299,7 +304,18 @@ def _check_parameters(platform: Platform, placed: list[tuple[Effect, Place]]) ->
 
 
 def _no_owner(name: str, platform: Platform, own: dict[str, Parameter]) -> str:
-    """What to say of a parameter that no declared effect has, though another may have it."""
+    """What to say of a parameter that no declared effect has, though another may have it, or the
+    same one on other axes.
+    """
+    idle = {
+        p.name: find_effect(d.effect).id
+        for d in platform.effects
+        for p in find_effect(d.effect).parameters
+    }
+    left = [p.name for p in platform.parameters if p.name in idle and p.name not in own]
+    if name in left:
+        axes = " and ".join(platform.axes)
+        return f"Of '{idle[name]}' on {axes} nothing depends on {', '.join(left)}; remove that."
     owners = [
         effect.id
         for effect, place in _everywhere(platform.axes, bool(platform.linear_axes))
