@@ -103,6 +103,8 @@ def simulate(
     }
     write_files_atomically(out, files)
     note_defaults(platform)
+    if not inputs and model.input_names:
+        click.echo(f"Note: no --input: {', '.join(model.input_names)} is zero.")
     click.echo(f"{len(found.t)} samples, {len(events)} events: {out / 'trajectory.csv'}")
 
 
@@ -217,7 +219,4 @@ def given_signals(
         _note_turns(
             f"{name} goes to", farthest, model.units[name], "a profile is in rad, not in deg"
         )
-    idle = [name for name in model.input_names if name not in signals]
-    if idle:
-        click.echo(f"Note: no --input for {', '.join(idle)}: zero.")
     return found, end

@@ -158,7 +158,7 @@ REFUSALS = [
     ("gap_pan", "\"__import__('os')\"", r"is not a name"),
     ("value = 1.5", 'value = "1.5"', r"parameters.gap_pan.value: '1.5' is not a number; write it"),
     ("value = 1.5", "value = true", r"parameters.gap_pan.value: True is not a number"),
-    ("value = 1.5", "value = nan", r"parameters.gap_pan.value: nan is not a finite number"),
+    ("value = 1.5", "value = nan", r"parameters: nan is no value; give that of gap_pan"),
     ("value = 1.5", "value = -inf", r"parameters.gap_pan.value: -inf is not a finite number"),
     ("value = 1.5", f"value = 1{'0' * 400}", r"parameters.gap_pan.value: 10* ?.* not a finite"),
     ("value = 1.5", "value = 2020-01-01", r"gap_pan.value: datetime.* is not a number"),

@@ -307,20 +307,15 @@ def _no_owner(name: str, platform: Platform, own: dict[str, Parameter]) -> str:
     """What to say of a parameter that no declared effect has, though another may have it, or the
     same one on other axes.
     """
-    idle = {
-        p.name: find_effect(d.effect).id
-        for d in platform.effects
-        for p in find_effect(d.effect).parameters
-    }
-    left = [p.name for p in platform.parameters if p.name in idle and p.name not in own]
-    if name in left:
-        axes = " and ".join(platform.axes)
-        return f"Of '{idle[name]}' on {axes} nothing depends on {', '.join(left)}; remove that."
+    elsewhere = {p.name for d in platform.effects for p in find_effect(d.effect).parameters}
+    idle = [p.name for p in platform.parameters if p.name in elsewhere and p.name not in own]
     owners = [
         effect.id
         for effect, place in _everywhere(platform.axes, bool(platform.linear_axes))
         if name in {p.name for p in effect.parameters_at(place)}
     ]
     guess = f": it is of {' or '.join(owners)}; declare one." if owners else did_you_mean(name, own)
+    if name in idle:
+        guess = f": nothing depends on {', '.join(idle)} on {' and '.join(platform.axes)}; remove."
     known = ", ".join(own)
     return f"Parameter '{name}' belongs to no declared effect{guess or '.'} Known here: {known}."
