@@ -39,7 +39,7 @@ def test_what_is_left_open_is_named_and_filled_in_it_is_a_machine(
     file = made(tmp_path, machine, drive)
     text = file.read_text("utf-8")
     with pytest.raises(
-        InputError, match=r"parameters: nan is no value; give that of \w+, .*F_c_pan"
+        InputError, match=r"nan is no value; give that of \w+, .*F_c_pan"
     ):
         declared_platform(str(file))
     filled = re.sub(r"(counts_per_\w+) = nan", r"\1 = 7200", text)
