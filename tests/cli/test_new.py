@@ -38,9 +38,7 @@ def test_what_is_left_open_is_named_and_filled_in_it_is_a_machine(
 ) -> None:
     file = made(tmp_path, machine, drive)
     text = file.read_text("utf-8")
-    with pytest.raises(
-        InputError, match=r"nan is no value; give that of \w+, .*F_c_pan"
-    ):
+    with pytest.raises(InputError, match=r"nan is no value; give that of \w+, .*F_c_pan"):
         declared_platform(str(file))
     filled = re.sub(r"(counts_per_\w+) = nan", r"\1 = 7200", text)
     filled = filled.replace("start = nan", "start = 0.5").replace("value = nan", "value = 1.5")
