@@ -33,7 +33,8 @@ class Rebuilt:
     place they take. `starts` are values of the parameters that came with them, from which a fit
     begins. Every effect `provides` mechanisms: where that of another structure has all of these,
     it contains this one. `notes` say of each added effect what was moved with it, or nothing. A fit
-    may be led astray where one of the effects `beside` is missing too.
+    may be led astray where one of the effects `beside` is missing too. A structure with friction or
+    encoder on another side than usual is a version `of` one that provides these mechanisms.
     """
 
     platform: Platform
@@ -43,6 +44,7 @@ class Rebuilt:
     provides: frozenset[str]
     notes: tuple[str, ...]
     beside: tuple[EffectDeclaration, ...] = ()
+    of: frozenset[str] = frozenset()
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -53,6 +55,7 @@ class Rebuilt:
 BEHIND = "joint"  # the site of friction behind a shaft or a gap
 SPLITTING = ("shaft", "play")  # mechanisms that leave friction at the gear, or behind them
 BEFORE = " before friction"  # ends the name of a shaft or gap with friction at the joint
+BEHIND_ENCODER = " behind the encoder"  # of one with the encoder at the motor
 USUAL_INERTIA = 0.2  # kg m^2; of an axis that the starts of the effects suit
 SPAN = 30.0  # 1; so many times lighter or heavier, they suit still
 
@@ -137,8 +140,8 @@ def _with_free(platform: Platform, added: tuple[EffectDeclaration, ...]) -> Plat
 
 
 def on_any_side(provides: frozenset[str]) -> frozenset[str]:
-    """Mechanisms without the side of them on which friction sits."""
-    return frozenset(one.removesuffix(BEFORE) for one in provides)
+    """Mechanisms without the side of them on which friction or encoder sits."""
+    return frozenset(m.removesuffix(BEFORE).removesuffix(BEHIND_ENCODER) for m in provides)
 
 
 def pairs(first: Rebuilt) -> tuple[Rebuilt, ...]:
@@ -269,7 +272,8 @@ def _with_friction_behind(
     if moved is None:
         return ()
     rebuilt = _rebuilt(moved, effect, axis)
-    return (replace(rebuilt, notes=(f"friction at the {BEHIND}", *rebuilt.notes[1:])),)
+    notes = (f"friction at the {BEHIND}", *rebuilt.notes[1:])
+    return (replace(rebuilt, notes=notes, of=as_declared.provides),)
 
 
 def _with_encoder_before(
@@ -290,7 +294,10 @@ def _with_encoder_before(
             rebuilt,
             added=(*rebuilt.added, encoder),
             notes=("encoder at the motor", *rebuilt.notes[1:], ""),
-            provides=rebuilt.provides | {f"encoder {axis} before"},
+            provides=frozenset(
+                f"{m}{BEHIND_ENCODER}" if m.startswith(SPLITTING) else m for m in rebuilt.provides
+            ),
+            of=as_declared.provides,
         ),
     )
 

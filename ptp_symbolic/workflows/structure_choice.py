@@ -25,9 +25,8 @@ from ptp_symbolic.numeric.diagnose.gain import (
 )
 from ptp_symbolic.numeric.diagnose.groups import Alternative, confusable
 from ptp_symbolic.numeric.diagnose.noise_floor import leaves_noise_alone, noise_floor_of
-from ptp_symbolic.numeric.diagnose.proposals import ProposedSet, declared_start
 from ptp_symbolic.numeric.diagnose.refits import is_near_noise_floor
-from ptp_symbolic.numeric.diagnose.search import search
+from ptp_symbolic.numeric.diagnose.search import from_values_of, search
 from ptp_symbolic.numeric.diagnose.stepwise import Search
 from ptp_symbolic.numeric.diagnose.structures import (
     FittedStructure,
@@ -347,7 +346,7 @@ def _searched(
     """Search for terms in a structure, begun at the values that it was fitted with, or at those
     that another search ended with; for none where the structure is enough, or the time is over.
     """
-    begun, is_alone = platform, False
+    begun, is_alone, is_all_its_own = platform, False, True
     if structure is not None:
         is_all_its_own = len(structure.problem.model.effects) == len(platform.effects)
         is_alone = logs.allowance.is_out_of_time or (structure.is_noise_alone and is_all_its_own)
@@ -374,19 +373,10 @@ def _searched(
         problem,
         free=tuple(replace(f, declared_start=declared_starts[f.name]) for f in problem.free),
     )
-    first = [] if structure is None else _beside_structure(structure, problem)
-    return Searched(platform, structure, problem, search(problem, first, brief=brief))
-
-
-def _beside_structure(structure: FittedStructure, problem: SearchProblem) -> list[ProposedSet]:
-    """The candidates of a search that a structure was fitted beside, at their values; no set where
-    there are none.
-    """
-    beside = {effect.key for effect in structure.problem.model.effects}
-    own = {c.key: c for c in problem.candidates if c.key in beside}  # the fullest form is the last
-    start = declared_start(problem)
-    values = {name: structure.trial.values.get(name, value) for name, value in start.items()}
-    return [ProposedSet(tuple(own.values()), values)] if own else []
+    found = search(problem, brief=brief)
+    if structure is not None and not is_all_its_own:
+        found = from_values_of(found, structure.trial.values)
+    return Searched(platform, structure, problem, found)
 
 
 def _chosen(
@@ -497,7 +487,7 @@ def _with_structure(
     own = named_effects(plain, verdict.final)
     final = replace(verdict.final, candidates=(*own, *verdict.final.candidates))
     alike = [Alternative(s.trial, gain_over(structure, s)) for s in equals]
-    names = {key for s in equals for key in s.keys if key not in structure.keys}
+    names = {c.key for s in equals for c in s.added if c.free} - set(structure.keys)
     group = {c.key: tuple(sorted(names)) for c in own}
     merged = {**verdict.confusable, **group}
     quiet = not verdict.leaves_more

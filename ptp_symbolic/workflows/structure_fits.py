@@ -76,11 +76,11 @@ class Fitted:
     @cached_property
     def followed(self) -> list[FittedStructure]:
         """Those that go on into the search for terms where none leaves noise alone: the best, of
-        one with friction on either side the better side.
+        one with friction or encoder on either side the better side.
         """
         distinct: dict[tuple[tuple[str, ...], frozenset[str]], FittedStructure] = {}
         for one in self.order:
-            distinct.setdefault((one.keys, on_any_side(one.provides)), one)
+            distinct.setdefault((one.keys[:1], on_any_side(one.provides)), one)
         return list(distinct.values())[:FOLLOWED]
 
     def over_windows_too(self, logs: Logs) -> "Fitted":
@@ -101,13 +101,15 @@ def fit_structures(
     rival: Search | None = None,
 ) -> Fitted:
     """Fit a platform and `every` structure one step away from it: a few iterations each from their
-    starts, the better half to the end of whole runs (see `_finished`). Where the best of them does
-    not come near what a `rival` search found, only that best one is fitted to its end.
+    starts, the better half to the end of whole runs (see `_finished`). Friction and encoder are put
+    on other sides in those alone that fit best as usual. Where the best of them does not come near
+    what a `rival` search found, only that best one is fitted to its end.
 
     They are started beside the parameters `known` from a fit that leaves noise alone, else beside
     those of the platform's: where a delay makes up for a lag, the former are right, the latter not.
     """
-    logs.progress(f"fitting {len(every)} structures one step away")
+    usual = [rebuilt for rebuilt in every if not rebuilt.of]
+    logs.progress(f"fitting {len(usual)} structures one step away")
     declared = _begun(platform, None, logs, {}).finished()
     beside = declared.trial.values if known is None else known
 
@@ -117,7 +119,12 @@ def fit_structures(
         except InputError as error:
             return f"the platform with it cannot be fitted: {error}"
 
-    results = list(zip(every, side_by_side(one, every), strict=True))
+    results = list(zip(usual, side_by_side(one, usual), strict=True))
+    first = [(r, b) for r, b in results if isinstance(b, FittedStructure)]
+    first.sort(key=lambda pair: deviance(pair[1], declared))
+    versions = {r.provides for r, _ in first[:FOLLOWED]}
+    sided = [rebuilt for rebuilt in every if rebuilt.of in versions]
+    results += zip(sided, side_by_side(one, sided), strict=True)
     begun = [b for _, b in results if isinstance(b, FittedStructure)]
     better = _better_half(begun, declared)
     logs.progress(f"fitting the better {len(better)} of them to their end")
@@ -151,7 +158,7 @@ def leading_platform(
     leading = with_what_leads(platform, every)
     if not leading:
         return None
-    own = {(r.keys, r.provides) for r in every if r.beside}
+    own = {(r.keys, r.provides) for r in every if r.beside and not r.of}
     there = [
         (beside, rebuilt)
         for beside in leading
@@ -220,14 +227,14 @@ def _begun(
 
 def _better_half(begun: Sequence[FittedStructure], declared: FittedStructure) -> tuple[int, ...]:
     """Which structures fit better than half of them, at least as many as are followed; a side of
-    friction that is far behind the other is left out.
+    friction or encoder that is far behind another is left out.
     """
     cost = [deviance(b, declared) for b in begun]
     ahead: dict[tuple[tuple[str, ...], frozenset[str]], FittedStructure] = {}
     left = []
     for k in sorted(range(len(begun)), key=cost.__getitem__):
         one = begun[k]
-        if is_near(one, ahead.setdefault((one.keys, on_any_side(one.provides)), one), declared):
+        if is_near(one, ahead.setdefault((one.keys[:1], on_any_side(one.provides)), one), declared):
             left.append(k)
     return tuple(left[: max(FOLLOWED, (len(left) + 1) // 2)])
 

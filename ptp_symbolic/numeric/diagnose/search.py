@@ -53,7 +53,9 @@ from ptp_symbolic.numeric.diagnose.refits import (
     from_far_off,
     is_near_noise_floor,
     over_whole_runs,
+    polished,
     refitted_in,
+    sharpened,
     started,
     taken_over,
     to_its_end,
@@ -304,18 +306,13 @@ def by_effects_alone(
     return other, fewer
 
 
-def search(
-    problem: SearchProblem, first: Sequence[ProposedSet] = (), *, brief: bool = False
-) -> Search:
+def search(problem: SearchProblem, *, brief: bool = False) -> Search:
     """Find the set of candidates that the training runs support; once its allowance is over, with
-    what has been tried by then. Sets that are known to fit are tried `first`. A `brief` search ends
-    with what is found soon: enough to see whether any set fits as well as a model whose residual is
-    noise alone.
+    what has been tried by then. A `brief` search ends with what is found soon: enough to see
+    whether any set fits as well as a model whose residual is noise alone.
     """
     problem.progress("comparing all sets of effects along the measured motion")
     proposals = propose(problem)
-    if first:
-        proposals = replace(proposals, sets=(*first, *proposals.sets), is_any_preferred=True)
     problem = replace(problem, candidates=placed_by_rows(problem.candidates, proposals))
     problem = with_fewer_samples(problem, proposals.start)
     problem.progress("fitting the declared model")
@@ -341,6 +338,22 @@ def search(
     if brief and not any(map(stepwise.is_white, (stepwise.declared, *found))):
         return _ended(stepwise, *stepwise.pruned(ranked([stepwise.declared, *found])[0]))
     return _from_declared(stepwise, found)
+
+
+def from_values_of(found: Search, values: Mapping[str, float]) -> Search:
+    """The search with its chosen set refitted from where declared parameters have other `values`,
+    if that is better: a set that leaves white noise is not restarted, and may be in another minimum
+    than a fit that it was led by.
+    """
+    problem, trial = found.problem, found.chosen
+    declared = {name: values[name] for f in problem.free for name in f.names if name in values}
+    begun = fitted(problem, trial.candidates, {**trial.values, **declared}, None)
+    best = ranked([trial, polished(problem, begun, found.propagated)])[0]
+    if best is trial or not trial.candidates:
+        return found
+    best = sharpened(problem, best, found.propagated)
+    members = tuple(step_of(best, s.candidate, s.without) for s in found.members)
+    return replace(found, chosen=best, members=members)
 
 
 def _seeker(
