@@ -4,10 +4,12 @@ Stored evidence can be decided upon again without one of them: the verdicts that
 price (`python -m tests.benchmark price`).
 """
 
+import inspect
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from importlib import import_module
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -409,11 +411,19 @@ RULES = (
 
 
 def table() -> str:
-    """The rules as a table of the documentation."""
-    rows = ["| Rule | It asks | Price | Switched off in |", "|---|---|---|---|"]
+    """The rules as a table of the documentation, each with the functions that hold it."""
+    rows = ["| Rule | It asks | Price | Defined in |", "|---|---|---|---|"]
     for rule in RULES:
-        places = [p.removeprefix("ptp_symbolic.").replace(":", ".") for p in rule.where]
+        places = dict.fromkeys(map(_definition, rule.where))
         rows.append(
             f"| {rule.name} | {rule.asks} | {rule.price} | {', '.join(f'`{p}`' for p in places)} |"
         )
     return "\n".join(rows) + "\n"
+
+
+def _definition(place: str) -> str:
+    """Where what is called at a `place` is defined; the place itself of a number."""
+    module, name = place.split(":")
+    found = inspect.unwrap(attrgetter(name)(import_module(module)))
+    own = f"{found.__module__}.{found.__qualname__}" if callable(found) else place.replace(":", ".")
+    return own.removeprefix("ptp_symbolic.")
