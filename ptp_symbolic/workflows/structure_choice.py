@@ -570,5 +570,5 @@ def _why_not_followed(
             " parameters"
         )
     if gain_over(structure, declared).is_better(structure.problem.material):
-        return "predicts better than the declared structure; others fitted better and were followed"
+        return "predicts better than the declared structure; those searched on fitted better"
     return "does not predict significantly better than the declared structure"

@@ -344,10 +344,10 @@ LOWER_END = "lower end of the 95 % interval of that share"
 CHANCE = "chance of finding it where it is not"
 VALIDATED = "share by which the sum of squares of the validation runs falls"
 VALIDATED_BY_CHANCE = "chance that the validation runs gain so much from what is not there"
-TRAINING = "residual of {signal} on the training runs, over the largest noise; a tenth more may be"
+TRAINING = "residual of {signal} on the training runs, over the largest noise that is plausible"
 VALIDATION = (
-    "residual of {signal} on the usual validation run, with values in their joint confidence"
-    " region, over the largest noise; a tenth more may be"
+    "residual of {signal} on the usual validation run (the median one), with values within their"
+    " joint confidence region, over that noise"
 )
 ALIKE = "alternatives that predict as well in its place"
 BESIDE = ", with what was found beside it"
