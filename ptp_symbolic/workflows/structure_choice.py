@@ -26,7 +26,7 @@ from ptp_symbolic.numeric.diagnose.gain import (
 from ptp_symbolic.numeric.diagnose.groups import Alternative, confusable
 from ptp_symbolic.numeric.diagnose.noise_floor import leaves_noise_alone, noise_floor_of
 from ptp_symbolic.numeric.diagnose.refits import is_near_noise_floor
-from ptp_symbolic.numeric.diagnose.search import from_values_of, search
+from ptp_symbolic.numeric.diagnose.search import search
 from ptp_symbolic.numeric.diagnose.stepwise import Search
 from ptp_symbolic.numeric.diagnose.structures import (
     FittedStructure,
@@ -346,7 +346,7 @@ def _searched(
     """Search for terms in a structure, begun at the values that it was fitted with, or at those
     that another search ended with; for none where the structure is enough, or the time is over.
     """
-    begun, is_alone, is_all_its_own = platform, False, True
+    begun, is_alone = platform, False
     if structure is not None:
         is_all_its_own = len(structure.problem.model.effects) == len(platform.effects)
         is_alone = logs.allowance.is_out_of_time or (structure.is_noise_alone and is_all_its_own)
@@ -373,10 +373,7 @@ def _searched(
         problem,
         free=tuple(replace(f, declared_start=declared_starts[f.name]) for f in problem.free),
     )
-    found = search(problem, brief=brief)
-    if structure is not None and not is_all_its_own:
-        found = from_values_of(found, structure.trial.values)
-    return Searched(platform, structure, problem, found)
+    return Searched(platform, structure, problem, search(problem, brief=brief))
 
 
 def _chosen(

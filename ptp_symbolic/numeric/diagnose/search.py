@@ -53,9 +53,7 @@ from ptp_symbolic.numeric.diagnose.refits import (
     from_far_off,
     is_near_noise_floor,
     over_whole_runs,
-    polished,
     refitted_in,
-    sharpened,
     started,
     taken_over,
     to_its_end,
@@ -338,22 +336,6 @@ def search(problem: SearchProblem, *, brief: bool = False) -> Search:
     if brief and not any(map(stepwise.is_white, (stepwise.declared, *found))):
         return _ended(stepwise, *stepwise.pruned(ranked([stepwise.declared, *found])[0]))
     return _from_declared(stepwise, found)
-
-
-def from_values_of(found: Search, values: Mapping[str, float]) -> Search:
-    """The search with its chosen set refitted from where declared parameters have other `values`,
-    if that is better: a set that leaves white noise is not restarted, and may be in another minimum
-    than a fit that it was led by.
-    """
-    problem, trial = found.problem, found.chosen
-    declared = {name: values[name] for f in problem.free for name in f.names if name in values}
-    begun = fitted(problem, trial.candidates, {**trial.values, **declared}, None)
-    best = ranked([trial, polished(problem, begun, found.propagated)])[0]
-    if best is trial or not trial.candidates:
-        return found
-    best = sharpened(problem, best, found.propagated)
-    members = tuple(step_of(best, s.candidate, s.without) for s in found.members)
-    return replace(found, chosen=best, members=members)
 
 
 def _seeker(
