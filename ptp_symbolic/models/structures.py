@@ -33,8 +33,8 @@ class Rebuilt:
     place they take. `starts` are values of the parameters that came with them, from which a fit
     begins. Every effect `provides` mechanisms: where that of another structure has all of these,
     it contains this one. `notes` say of each added effect what was moved with it, or nothing. A fit
-    may be led astray where one of the effects `beside` is missing too. A structure with friction or
-    encoder on another side than usual is a version `of` one that provides these mechanisms.
+    may be led astray where one of the effects `beside` is missing too. One with the encoder at
+    the motor is a version `of` one that provides these mechanisms.
     """
 
     platform: Platform
@@ -272,8 +272,7 @@ def _with_friction_behind(
     if moved is None:
         return ()
     rebuilt = _rebuilt(moved, effect, axis)
-    notes = (f"friction at the {BEHIND}", *rebuilt.notes[1:])
-    return (replace(rebuilt, notes=notes, of=as_declared.provides),)
+    return (replace(rebuilt, notes=(f"friction at the {BEHIND}", *rebuilt.notes[1:])),)
 
 
 def _with_encoder_before(

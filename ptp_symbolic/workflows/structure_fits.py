@@ -101,8 +101,8 @@ def fit_structures(
     rival: Search | None = None,
 ) -> Fitted:
     """Fit a platform and `every` structure one step away from it: a few iterations each from their
-    starts, the better half to the end of whole runs (see `_finished`). Friction and encoder are put
-    on other sides in those alone that fit best as usual. Where the best of them does not come near
+    starts, the better half to the end of whole runs (see `_finished`). The encoder is put at the motor
+    in those alone that fit best with it at the joint. Where the best of them does not come near
     what a `rival` search found, only that best one is fitted to its end.
 
     They are started beside the parameters `known` from a fit that leaves noise alone, else beside
@@ -123,8 +123,8 @@ def fit_structures(
     first = [(r, b) for r, b in results if isinstance(b, FittedStructure)]
     first.sort(key=lambda pair: deviance(pair[1], declared))
     versions = {r.provides for r, _ in first[:FOLLOWED]}
-    sided = [rebuilt for rebuilt in every if rebuilt.of in versions]
-    results += zip(sided, side_by_side(one, sided), strict=True)
+    further = [rebuilt for rebuilt in every if rebuilt.of in versions]
+    results += zip(further, side_by_side(one, further), strict=True)
     begun = [b for _, b in results if isinstance(b, FittedStructure)]
     better = _better_half(begun, declared)
     logs.progress(f"fitting the better {len(better)} of them to their end")
