@@ -101,9 +101,9 @@ def fit_structures(
     rival: Search | None = None,
 ) -> Fitted:
     """Fit a platform and `every` structure one step away from it: a few iterations each from their
-    starts, the better half to the end of whole runs (see `_finished`). The encoder is put at the motor
-    in those alone that fit best with it at the joint. Where the best of them does not come near
-    what a `rival` search found, only that best one is fitted to its end.
+    starts, the better half to the end of whole runs (see `_finished`). The encoder is put at the
+    motor in those alone of which half fits worse with it at the joint. Where the best of them does
+    not come near what a `rival` search found, only that best one is fitted to its end.
 
     They are started beside the parameters `known` from a fit that leaves noise alone, else beside
     those of the platform's: where a delay makes up for a lag, the former are right, the latter not.
@@ -122,7 +122,7 @@ def fit_structures(
     results = list(zip(usual, side_by_side(one, usual), strict=True))
     first = [(r, b) for r, b in results if isinstance(b, FittedStructure)]
     first.sort(key=lambda pair: deviance(pair[1], declared))
-    versions = {r.provides for r, _ in first[:FOLLOWED]}
+    versions = {r.provides for r, _ in first[: max(FOLLOWED, (len(first) + 1) // 2)]}
     further = [rebuilt for rebuilt in every if rebuilt.of in versions]
     results += zip(further, side_by_side(one, further), strict=True)
     begun = [b for _, b in results if isinstance(b, FittedStructure)]
