@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Any
 
 from ptp_symbolic.models import variants
-from ptp_symbolic.models.structures import Rebuilt, pairs, structures
+from ptp_symbolic.models.structures import Rebuilt, on_any_side, pairs, structures
 from ptp_symbolic.models.variants import candidate_effects
 from ptp_symbolic.numeric.diagnose.fitted_model import (
     FittedModel,
@@ -155,8 +155,7 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     if not terms.is_noise_alone and not fitted.quiet and not logs.allowance.is_over:
         again = _fitted_beside(platform, beside, fitted, logs) if beside else None
         if not (again and again.quiet):
-            leading = leading_platform(platform, every, fitted, logs)
-            again = (leading and _fitted_beside(platform, leading, fitted, logs)) or again
+            again = _led(platform, every, fitted, logs) or again
         fitted = again or fitted.over_windows_too(logs)
         if not fitted.quiet and fitted.order and not logs.allowance.is_over:
             fitted, paired = _paired(fitted, every, logs)
@@ -217,6 +216,17 @@ def _fitted_beside(
     found = fit_structures(beside, [r for r in every if (r.keys, r.provides) in own], logs)
     found = found if found.quiet else found.over_windows_too(logs)
     return replace(found, failed={**fitted.failed, **found.failed}) if found.order else None
+
+
+def _led(platform: Platform, every: Sequence[Rebuilt], fitted: Fitted, logs: Logs) -> Fitted | None:
+    """The structures fitted beside what leads some of them, if the best is one of these then: a
+    torque also makes up for friction that differs by direction, beside any other.
+    """
+    leading = leading_platform(platform, every, fitted, logs)
+    found = _fitted_beside(platform, leading, fitted, logs) if leading else None
+    led = {(r.keys[0], on_any_side(r.provides)) for r in every if r.beside}
+    best = found.order[0] if found else None
+    return found if best and (best.keys[0], on_any_side(best.provides)) in led else None
 
 
 def _followed_on(
