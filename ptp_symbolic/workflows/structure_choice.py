@@ -154,8 +154,7 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     fitted = fit_structures(platform, every, logs, known, terms.found if beside else None)
     if not terms.is_noise_alone and not fitted.quiet and not logs.allowance.is_over:
         again = _fitted_beside(platform, beside, fitted, logs) if beside else None
-        if not (again and again.quiet):
-            again = _led(platform, every, fitted, logs) or again
+        again = again or _led(platform, every, fitted, logs)
         fitted = again or fitted.over_windows_too(logs)
         if not fitted.quiet and fitted.order and not logs.allowance.is_over:
             fitted, paired = _paired(fitted, every, logs)
@@ -212,8 +211,10 @@ def _fitted_beside(
     than these alone.
     """
     own = {(s.keys, s.provides) for s in fitted.every}
+    better = {(s.keys, s.provides) for s in (fitted.every[k] for k in fitted.better)}
     every = in_scale(structures(beside)[0], platform)
-    found = fit_structures(beside, [r for r in every if (r.keys, r.provides) in own], logs)
+    kept = [r for r in every if (r.keys, r.provides) in (better if r.of else own)]
+    found = fit_structures(beside, kept, logs)
     found = found if found.quiet else found.over_windows_too(logs)
     return replace(found, failed={**fitted.failed, **found.failed}) if found.order else None
 
