@@ -173,8 +173,8 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     rest = [s for s in fitted.every if s not in order]
     alike = _alike(chosen, fitted)
     own = set(effect_keys(platform))
-    beside = [e.title for e in fitted.declared.problem.model.effects if e.key not in own]
-    rows = tuple(_row(s, fitted.declared, chosen, refused, alike, beside) for s in [*order, *rest])
+    leading = [e.title for e in fitted.declared.problem.model.effects if e.key not in own]
+    rows = tuple(_row(s, fitted.declared, chosen, refused, alike, leading) for s in [*order, *rest])
     is_cut_short = is_late or any(s.found.is_cut_short for s in [terms, *outcomes])
     return Choice(chosen, terms.decided, rows, {**untried, **fitted.failed}, is_cut_short)
 

@@ -249,8 +249,8 @@ def _effect(found: _Parts, effect: Effect, own: Contribution) -> None:
         return
     for rate, inertia in own.inertias.items():
         stored, law = Ledger(stored=found.resolve(inertia) * rate**2 / 2), found.resolve(inertia)
-        axis = kinematics.place_of(rate).removeprefix("gear_")
-        node = Node(f"inertia_{key}", INERTIA, law, f"{effect.title}, {axis} axis", axis, stored)
+        place = kinematics.place_of(rate).removeprefix("gear_")
+        node = Node(f"inertia_{key}", INERTIA, law, f"{effect.title}, {place} axis", place, stored)
         found.add(node, {rate: law * acceleration(rate)})
     efforts = {rate: -found.resolve(torque) for rate, torque in own.torques.items()}
     potential = found.resolve(own.potential)
