@@ -76,7 +76,7 @@ def against_black_box(
     return {"about": FITTED, **compared}
 
 
-SAMPLES = 5.2e8  # 1; that a search may simulate, unless a multiple is asked for; measured
+SAMPLES = 4e8  # 1; that a search may simulate, unless a multiple is asked for; measured
 TIME_LIMIT = 900.0  # s; of the search, unless another is asked for
 
 
