@@ -104,7 +104,7 @@ def simulate(
     write_files_atomically(out, files)
     note_defaults(platform)
     if not inputs and model.input_names:
-        click.echo(f"Note: no --input: {', '.join(model.input_names)} is zero.")
+        click.echo(f"Note: without --input these are zero: {', '.join(model.input_names)}.")
     click.echo(f"{len(found.t)} samples, {len(events)} events: {out / 'trajectory.csv'}")
 
 

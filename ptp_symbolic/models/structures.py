@@ -139,9 +139,15 @@ def _with_free(platform: Platform, added: tuple[EffectDeclaration, ...]) -> Plat
     return replace(whole, parameters=(*platform.parameters, *fresh))
 
 
-def on_any_side(provides: frozenset[str]) -> frozenset[str]:
-    """Mechanisms without the side of them on which friction or encoder sits."""
-    return frozenset(m.removesuffix(BEFORE).removesuffix(BEHIND_ENCODER) for m in provides)
+Family = tuple[tuple[str, ...], frozenset[str]]
+
+
+def family(keys: Sequence[str], provides: frozenset[str]) -> Family:
+    """What structures share that differ by the side of friction or encoder alone, from the `keys`
+    and mechanisms of any of them.
+    """
+    bare = frozenset(m.removesuffix(BEFORE).removesuffix(BEHIND_ENCODER) for m in provides)
+    return tuple(keys[:1]), bare
 
 
 def pairs(first: Rebuilt) -> tuple[Rebuilt, ...]:
@@ -267,12 +273,16 @@ def _with_friction_behind(
     """`platform` with an effect that splits the axis, and the dry friction that this leaves at the
     gear behind it, as in the bearings of a heavy load. None where it is said where friction sits.
     """
-    splits = any(one.startswith(SPLITTING) for one in as_declared.provides)
-    moved = _behind(platform, axis) if splits else None
+    moved = _behind(platform, axis) if _splits(as_declared) else None
     if moved is None:
         return ()
     rebuilt = _rebuilt(moved, effect, axis)
     return (replace(rebuilt, notes=(f"friction at the {BEHIND}", *rebuilt.notes[1:])),)
+
+
+def _splits(rebuilt: Rebuilt) -> bool:
+    """Whether a structure brings a shaft or a gap."""
+    return any(one.startswith(SPLITTING) for one in rebuilt.provides)
 
 
 def _with_encoder_before(
@@ -281,10 +291,9 @@ def _with_encoder_before(
     """`platform` with an effect that splits the axis, and the angle measured before it, at the
     motor; none where no angle of the axis is.
     """
-    splits = any(one.startswith(SPLITTING) for one in as_declared.provides)
     signals = {s.signal for s in platform.signals if s.role == "output"}
     encoder = EffectDeclaration("motor_encoder", axis, None)
-    if not splits or f"theta_{axis}" not in signals or encoder in platform.effects:
+    if not _splits(as_declared) or f"theta_{axis}" not in signals or encoder in platform.effects:
         return ()
     there = replace(platform, effects=(*platform.effects, encoder))
     rebuilt = _rebuilt(there, effect, axis)

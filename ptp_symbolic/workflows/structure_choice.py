@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Any
 
 from ptp_symbolic.models import variants
-from ptp_symbolic.models.structures import Rebuilt, on_any_side, pairs, structures
+from ptp_symbolic.models.structures import Rebuilt, family, pairs, structures
 from ptp_symbolic.models.variants import candidate_effects
 from ptp_symbolic.numeric.diagnose.fitted_model import (
     FittedModel,
@@ -225,9 +225,9 @@ def _led(platform: Platform, every: Sequence[Rebuilt], fitted: Fitted, logs: Log
     """
     leading = leading_platform(platform, every, fitted, logs)
     found = _fitted_beside(platform, leading, fitted, logs) if leading else None
-    led = {(r.keys[0], on_any_side(r.provides)) for r in every if r.beside}
+    led = {family(r.keys, r.provides) for r in every if r.beside}
     best = found.order[0] if found else None
-    return found if best and (best.keys[0], on_any_side(best.provides)) in led else None
+    return found if best and family(best.keys, best.provides) in led else None
 
 
 def _followed_on(
@@ -495,7 +495,7 @@ def _with_structure(
     own = named_effects(plain, verdict.final)
     final = replace(verdict.final, candidates=(*own, *verdict.final.candidates))
     alike = [Alternative(s.trial, gain_over(structure, s)) for s in equals]
-    names = {c.key for s in equals for c in s.added if c.free} - set(structure.keys)
+    names = {c.key for s in equals for c in s.with_parameters} - set(structure.keys)
     group = {c.key: tuple(sorted(names)) for c in own}
     merged = {**verdict.confusable, **group}
     quiet = not verdict.leaves_more
@@ -564,7 +564,7 @@ def _row(
         why = refused.get(structure) or _why_not_followed(structure, declared, chosen.structure)
     earned = None if failed else gain_over(structure, declared)
     row = ranking_row(structure.added, structure.trial, earned, accepted, why)
-    title = " and ".join(c.title for c in structure.added if c.free)
+    title = " and ".join(c.title for c in structure.with_parameters)
     title += f", beside {' and '.join(beside)}" if beside else ""
     return {**row, "title": title, "structure": list(structure.keys)}
 

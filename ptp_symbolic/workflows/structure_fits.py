@@ -9,8 +9,9 @@ import numpy as np
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models.structures import (
+    Family,
     Rebuilt,
-    on_any_side,
+    family,
     structures,
     to_scale,
     with_what_leads,
@@ -78,9 +79,9 @@ class Fitted:
         """Those that go on into the search for terms where none leaves noise alone: the best, of
         one with friction or encoder on either side the better side.
         """
-        distinct: dict[tuple[tuple[str, ...], frozenset[str]], FittedStructure] = {}
+        distinct: dict[Family, FittedStructure] = {}
         for one in self.order:
-            distinct.setdefault((one.keys[:1], on_any_side(one.provides)), one)
+            distinct.setdefault(family(one.keys, one.provides), one)
         return list(distinct.values())[:FOLLOWED]
 
     def over_windows_too(self, logs: Logs) -> "Fitted":
@@ -102,8 +103,8 @@ def fit_structures(
 ) -> Fitted:
     """Fit a platform and `every` structure one step away from it: a few iterations each from their
     starts, the better half to the end of whole runs (see `_finished`). The encoder is put at the
-    motor in those alone of which half fits worse with it at the joint. Where the best of them does
-    not come near what a `rival` search found, only that best one is fitted to its end.
+    motor only in those that are in the better half with it at the joint. Where the best of them
+    does not come near what a `rival` search found, only that best one is fitted to its end.
 
     They are started beside the parameters `known` from a fit that leaves noise alone, else beside
     those of the platform's: where a delay makes up for a lag, the former are right, the latter not.
@@ -230,11 +231,12 @@ def _better_half(begun: Sequence[FittedStructure], declared: FittedStructure) ->
     friction or encoder that is far behind another is left out.
     """
     cost = [deviance(b, declared) for b in begun]
-    ahead: dict[tuple[tuple[str, ...], frozenset[str]], FittedStructure] = {}
+    ahead: dict[Family, FittedStructure] = {}
     left = []
     for k in sorted(range(len(begun)), key=cost.__getitem__):
         one = begun[k]
-        if is_near(one, ahead.setdefault((one.keys[:1], on_any_side(one.provides)), one), declared):
+        first = ahead.setdefault(family(one.keys, one.provides), one)
+        if is_near(one, first, declared):
             left.append(k)
     return tuple(left[: max(FOLLOWED, (len(left) + 1) // 2)])
 

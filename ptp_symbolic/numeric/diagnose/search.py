@@ -242,7 +242,7 @@ def extended(
             break
         stepwise.tried.others.append(best)
         full = stepwise.completed(grown)
-        if gain(grown, best).share >= MOST:  # the best of those that gain less has been
+        if gain(grown, best).share >= MOST:  # else `best_earning` has restarted it
             full = stepwise.restarted(full)
         pruned, fewer = stepwise.pruned(full)
         same = pruned.keys == best.keys

@@ -70,6 +70,12 @@ class FittedStructure:
         return tuple(c.key for c in self.added)
 
     @property
+    def with_parameters(self) -> tuple[Candidate, ...]:
+        """The added effects that have any: where an encoder sits has none."""
+        own = {e.key for e in self.problem.model.effects if e.parameters}
+        return tuple(c for c in self.added if c.key in own)
+
+    @property
     def is_noise_alone(self) -> bool:
         """Whether it leaves noise alone."""
         if self.trial.fit.failed:

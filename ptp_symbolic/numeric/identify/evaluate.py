@@ -133,7 +133,8 @@ def _settle_state(fx, dx, fast, slopes, encoders, x):
     for row, joint, gear in encoders:
         shift = 0.0
         for i in range(len(fast)):
-            shift += slopes[row, fast[i]] * moved[i] / _by_turn(slopes, row, joint, gear)
+            shift += slopes[row, fast[i]] * moved[i]
+        shift /= _by_turn(slopes, row, joint, gear)
         x[joint] -= shift
         if gear >= 0:
             x[gear] -= shift
