@@ -126,16 +126,17 @@ def extended(
     values: Mapping[str, float],
     fitted: Sequence[ParameterDeclaration],
 ) -> Platform:
-    """`platform` with effects and fitted parameters added; `values` are the new starts, and of the
-    added effects what was not fitted: the result declares all that the model had.
+    """`platform` with effects and fitted parameters added; `values` are the new starts of what is
+    free, and of the added effects what was not fitted: the result declares all that the model had.
+    What is declared as known stays so, though a fit beside other effects may have moved it.
     """
     kept = []
     replaced = {p.name for p in fitted}
     for declaration in platform.parameters:
         if declaration.name in replaced:
             continue
-        value = values.get(declaration.name, declaration.value)
-        kept.append(replace(declaration, value=value))
+        found = values.get(declaration.name, declaration.value)
+        kept.append(replace(declaration, value=found) if declaration.free else declaration)
     whole = replace(platform, effects=(*platform.effects, *added), parameters=(*kept, *fitted))
     own = {(e.effect, e.axis) for e in added}
     known = tuple(

@@ -26,7 +26,7 @@ from ptp_symbolic.numeric.diagnose.gain import (
 from ptp_symbolic.numeric.diagnose.groups import Alternative, confusable
 from ptp_symbolic.numeric.diagnose.noise_floor import leaves_noise_alone, noise_floor_of
 from ptp_symbolic.numeric.diagnose.refits import is_near_noise_floor
-from ptp_symbolic.numeric.diagnose.search import search
+from ptp_symbolic.numeric.diagnose.search import continued, search
 from ptp_symbolic.numeric.diagnose.stepwise import Search
 from ptp_symbolic.numeric.diagnose.structures import (
     FittedStructure,
@@ -132,15 +132,12 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     every = in_scale(every, platform)
     platforms = _platforms(every)
 
-    def searched(
-        structure: FittedStructure | None, brief: bool, begin: Searched | None = None
-    ) -> Searched:
-        name = " + ".join(structure.keys) if structure else ""
-        logs.progress(f"searching for terms beside {name or 'what is declared'}")
+    def searched(structure: FittedStructure | None, begin: Searched | None = None) -> Searched:
+        logs.progress(f"searching for terms beside {_name(structure)}")
         there = platforms[structure.keys, structure.provides] if structure else platform
-        return _searched(there, structure, logs, begin, brief=brief)
+        return _searched(there, structure, logs, begin, brief=bool(every))
 
-    terms = searched(None, brief=bool(every))
+    terms = searched(None)
     is_enough = terms.is_noise_alone and not terms.found.chosen.candidates
     is_stopped = logs.allowance.is_out_of_time
     if not every or is_enough or is_stopped:
@@ -160,15 +157,16 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
             fitted, paired = _paired(fitted, every, logs)
             platforms |= _platforms(paired)
     followed = fitted.quiet or ([] if terms.is_noise_alone else fitted.followed)
-    outcomes = [searched(s, brief=True) for s in followed]
+    outcomes = [searched(s) for s in followed]
     if not logs.allowance.is_over:
         outcomes = [_from_what_contains_it(one, outcomes, searched) for one in outcomes]
     if not terms.is_noise_alone:
         fitted, outcomes = _followed_on(platform, fitted, outcomes, searched, logs)
     is_late = not terms.is_noise_alone and logs.allowance.is_over
     if not terms.is_noise_alone and not is_late:
-        outcomes, terms = _at_length(outcomes, terms, searched)
-    chosen, refused = _chosen(terms.decided, [s.decided for s in outcomes], fitted, logs)
+        outcomes, terms = _at_length(outcomes, terms, logs)
+    ends = [s.decided for s in _not_far_behind(outcomes)]
+    chosen, refused = _chosen(terms.decided, ends, fitted, logs)
     order = fitted.order
     rest = [s for s in fitted.every if s not in order]
     alike = _alike(chosen, fitted)
@@ -254,7 +252,7 @@ def _followed_on(
     moved = [replace(s, structure=there[key]) for s, key in zip(outcomes, own, strict=True)]
     first = (found.quiet or found.order)[0]
     if all(s.structure is not first for s in moved) and not logs.allowance.is_over:
-        moved.append(searched(first, brief=True))
+        moved.append(searched(first))
     return found, moved
 
 
@@ -296,14 +294,12 @@ def _from_what_contains_it(
     richer = [s for s in outcomes if s.is_noise_alone and _contains(s, one)]
     if one.is_noise_alone or not richer:
         return one
-    again = searched(one.structure, True, richer[0])
+    again = searched(one.structure, richer[0])
     return again if again.is_noise_alone else one
 
 
 def _at_length(
-    outcomes: Sequence[Searched],
-    terms: Searched,
-    searched: Callable[..., Searched],
+    outcomes: Sequence[Searched], terms: Searched, logs: Logs
 ) -> tuple[list[Searched], Searched]:
     """The searches, in whole where they were brief: in the structure that fits best, or in its
     simplest part that is not far behind (a gap beside a shaft may make up for a missing term), and
@@ -313,12 +309,23 @@ def _at_length(
     if best is not terms and not best.is_noise_alone:
         as_good = [s for s in outcomes if _contains(best, s) and not _is_far_ahead(best, s)]
         found = min(as_good, key=_size_of, default=best)
-        whole = searched(found.structure, False)
+        whole = _continued(found, logs)
         outcomes = [whole if s is found else s for s in outcomes]
         best = _best_fit([best, whole]) if found is not best else whole
     if best is terms or not _is_far_ahead(best, terms):
-        terms = searched(None, False)
+        terms = _continued(terms, logs)
     return list(outcomes), terms
+
+
+def _continued(one: Searched, logs: Logs) -> Searched:
+    """The search, in whole where it was brief."""
+    logs.progress(f"searching on for terms beside {_name(one.structure)}")
+    problem = replace(one.problem, allowance=logs.allowance.rest(LEAST_SHARE))
+    return replace(one, found=continued(problem, one.found))
+
+
+def _name(structure: FittedStructure | None) -> str:
+    return " + ".join(structure.keys) if structure else "what is declared"
 
 
 def _contains(one: Searched, other: Searched) -> bool:
@@ -338,6 +345,16 @@ def _best_fit(searches: Sequence[Searched]) -> Searched:
     trials = [on_runs_of(s.found.problem, s.found.chosen, pattern) for s in searches]
     cost = deviances(trials)
     return searches[min(range(len(cost)), key=lambda k: cost[k])]
+
+
+def _not_far_behind(outcomes: Sequence[Searched]) -> Sequence[Searched]:
+    """Those that may be chosen: where the best leaves noise alone, none that it is far ahead of."""
+    if len(outcomes) < 2:
+        return outcomes
+    best = _best_fit(outcomes)
+    if not best.is_noise_alone:
+        return outcomes
+    return [s for s in outcomes if s is best or s.is_noise_alone or not _is_far_ahead(best, s)]
 
 
 def _is_far_ahead(one: Searched, other: Searched) -> bool:

@@ -77,11 +77,14 @@ class Fitted:
     @cached_property
     def followed(self) -> list[FittedStructure]:
         """Those that go on into the search for terms where none leaves noise alone: the best, of
-        one with friction or encoder on either side the better side.
+        one with friction or encoder on either side the better side, and none that has all
+        mechanisms of another and predicts no better.
         """
         distinct: dict[Family, FittedStructure] = {}
         for one in self.order:
-            distinct.setdefault(family(one.keys, one.provides), one)
+            parts = [s for s in distinct.values() if s.provides <= one.provides]
+            if all(is_better(one, part) for part in parts):
+                distinct.setdefault(family(one.keys, one.provides), one)
         return list(distinct.values())[:FOLLOWED]
 
     def over_windows_too(self, logs: Logs) -> "Fitted":

@@ -62,8 +62,7 @@ class Scene:
             self.fitted_beside.append(beside)
             return after
 
-        def search(structure: Structure, brief: bool) -> Searched:
-            assert brief
+        def search(structure: Structure) -> Searched:
             self.searched.append(structure.keys)
             return self.outcome(structure)
 

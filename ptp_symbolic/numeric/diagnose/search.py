@@ -314,19 +314,36 @@ def search(problem: SearchProblem, *, brief: bool = False) -> Search:
     problem = replace(problem, candidates=placed_by_rows(problem.candidates, proposals))
     problem = with_fewer_samples(problem, proposals.start)
     problem.progress("fitting the declared model")
-    before = None
-    if problem.windows:
-        stepwise = _seeker(*over_whole_runs(problem, proposals), proposals)
-        before = stepwise.declared
-        stepwise, found = _with_lines(stepwise, _soon_found(stepwise), _soon_found)
-        if stepwise.problem.is_over or any(map(stepwise.is_white, (stepwise.declared, *found))):
-            return replace(_from_declared(stepwise, found), is_over_windows=False)
-        if brief:
-            best = stepwise.pruned(ranked([stepwise.declared, *found])[0])
-            return replace(_ended(stepwise, *best), is_over_windows=False)
-        problem = replace(problem, candidates=stepwise.problem.candidates)
-        proposals = stepwise.proposals
-        problem.progress("fitting the declared model over windows")
+    if not problem.windows:
+        return _over_windows(problem, proposals, None, brief)
+    stepwise = _seeker(*over_whole_runs(problem, proposals), proposals)
+    before = stepwise.declared
+    stepwise, found = _with_lines(stepwise, _soon_found(stepwise), _soon_found)
+    if stepwise.problem.is_over or any(map(stepwise.is_white, (stepwise.declared, *found))):
+        return replace(_from_declared(stepwise, found), is_over_windows=False)
+    if brief:
+        best = stepwise.pruned(ranked([stepwise.declared, *found])[0])
+        return replace(_ended(stepwise, *best), is_over_windows=False, is_brief=True)
+    problem = replace(problem, candidates=stepwise.problem.candidates)
+    return _over_windows(problem, stepwise.proposals, before, brief)
+
+
+def continued(problem: SearchProblem, begun: Search) -> Search:
+    """The whole search, of which `begun` is the brief one; that itself where it is whole."""
+    if not begun.is_brief:
+        return begun
+    if not problem.windows:
+        return search(problem)
+    problem = with_fewer_samples(problem, begun.proposals.start)
+    problem = replace(problem, candidates=begun.problem.candidates)
+    return _over_windows(problem, begun.proposals, begun.declared, brief=False)
+
+
+def _over_windows(
+    problem: SearchProblem, proposals: ProposedSets, before: FittedModel | None, brief: bool
+) -> Search:
+    """The search over windows; `before` is the declared model fitted over whole runs."""
+    problem.progress("fitting the declared model over windows")
     part, after = fitted_over_windows(problem, proposals)
     declared = after if before is None else better_over_same_runs(before, after)
     stepwise = _seeker(part, declared, proposals)
@@ -334,7 +351,8 @@ def search(problem: SearchProblem, *, brief: bool = False) -> Search:
     if not problem.windows:
         stepwise, found = _with_lines(stepwise, found, _proposed)
     if brief and not any(map(stepwise.is_white, (stepwise.declared, *found))):
-        return _ended(stepwise, *stepwise.pruned(ranked([stepwise.declared, *found])[0]))
+        best = stepwise.pruned(ranked([stepwise.declared, *found])[0])
+        return replace(_ended(stepwise, *best), is_brief=True)
     return _from_declared(stepwise, found)
 
 
@@ -504,8 +522,14 @@ def _declared_after(stepwise: StepwiseSearch, trial: FittedModel) -> FittedModel
 
 
 def _ended(stepwise: StepwiseSearch, best: FittedModel, steps: list[Step]) -> Search:
-    """The search that chose the trial, with each of its candidates in its simplest form."""
-    is_cut_short, best = stepwise.problem.is_over, stepwise.sharpened(simplified(stepwise, best))
+    """The search that chose the trial, with each of its candidates in its simplest form; without
+    those that are not needed any more then: harmonics that trade for each other may leave a fit at
+    a place where a declared value makes up for it.
+    """
+    is_cut_short, simple = stepwise.problem.is_over, simplified(stepwise, best)
+    if simple is not best and len(simple.candidates) > 1 and stepwise.is_white(simple):
+        simple, steps = stepwise.pruned(simple)
+    best = stepwise.sharpened(simple)
     if stepwise.is_white(best):
         without = {s.candidate.key: s.without for s in steps}
     else:  # the steps were brief, or there are none

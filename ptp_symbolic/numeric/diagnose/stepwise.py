@@ -92,7 +92,7 @@ class Search:
     was found, and without those that have none. The search `is_cut_short` where its time was over
     at its end: some moves may not have been tried. The declared model `is_over_windows` where it
     was fitted over windows too, and `is_taken_over` where it was found from the end of a set, not
-    from its own starts.
+    from its own starts. A search that `is_brief` can be `continued`.
     """
 
     problem: SearchProblem
@@ -105,6 +105,7 @@ class Search:
     is_cut_short: bool
     is_over_windows: bool = True
     is_taken_over: bool = False
+    is_brief: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -315,12 +315,17 @@ def with_start(
 
 
 def _twists(model: Model, run: Run) -> list[StartUnknown]:
-    """The angles of gears ahead of joints that are measured, where dry friction behind a shaft
-    without a gap can hold it twisted: by a small share of the range of the joint. Free to be more,
-    it takes up what else is missing, and leads a fit astray.
+    """The angles of gears ahead of joints that are measured, where dry friction behind a shaft can
+    hold it twisted: by a small share of the range of the joint. Free to be more, it takes up what
+    else is missing, and leads a fit astray. A shaft with a gap may have none: a place in that holds
+    no twist then.
     """
     states, found = list(model.state_names), []
-    apart = {states[gear] for gear, _ in model.module.CONTACT_ANGLES}
+    apart = {
+        states[gear]
+        for contact, (gear, _) in enumerate(model.module.CONTACT_ANGLES)
+        if model.contacts[contact, 0] != 0
+    }
     held = {states[rate].replace("omega_", "theta_gear_", 1) for rate in model.friction_rates}
     for column, signal in enumerate(run.signals):
         gear = signal.replace("theta_", "theta_gear_", 1)
