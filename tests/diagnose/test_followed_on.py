@@ -172,3 +172,31 @@ def test_what_needs_the_structure_is_no_effect_of_the_platform_without_it(
     patch(structure_choice, "with_effects", lambda platform, trial: trial.candidates)
     assert structure_choice._with_found(rigid, found(gap, drag, late)) == (drag,)
     assert structure_choice._with_found(rigid, found(gap, late)) is None
+
+
+def end(error: float) -> Searched:
+    """A search that ends with some error."""
+    return Searched(*cast(Any, (None, None, None, SimpleNamespace(chosen=error))))
+
+
+@pytest.mark.parametrize(
+    ("errors", "left"),
+    [
+        ((1.0, 9.0, 1.3), (1.0, 1.3)),  # one that is far behind noise alone is no answer
+        ((1.0, 1.0, 9.0), (1.0, 1.0)),
+        ((2.0, 9.0), (2.0, 9.0)),  # beside more than noise each may be
+        ((9.0,), (9.0,)),
+    ],
+)
+def test_what_is_far_behind_noise_alone_is_not_decided_on(
+    monkeypatch: pytest.MonkeyPatch, errors: tuple[float, ...], left: tuple[float, ...]
+) -> None:
+    def error(one: Searched) -> Any:
+        return one.found.chosen
+
+    patch = monkeypatch.setattr
+    patch(Searched, "is_noise_alone", property(lambda one: error(one) <= 1.0))
+    patch(structure_choice, "_best_fit", lambda ends: min(ends, key=error))
+    patch(structure_choice, "_is_far_ahead", lambda one, other: 2.0 * error(one) < error(other))
+    found = structure_choice._not_far_behind([end(e) for e in errors])
+    assert tuple(error(one) for one in found) == left

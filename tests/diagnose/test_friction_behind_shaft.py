@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.models.structures import structures
+from ptp_symbolic.models.variants import with_candidates
 from ptp_symbolic.numeric.data import log_files, read_logs
 from ptp_symbolic.numeric.diagnose.structures import FittedStructure, begin_structure, is_better
 from ptp_symbolic.numeric.identify.intervals import estimates
@@ -153,6 +154,24 @@ def test_a_shaft_that_begins_twisted_has_its_true_stiffness_and_friction(
     for name, value in true.items():
         assert own[name].lower <= value <= own[name].upper, name
         assert own[name].value == pytest.approx(value, rel=0.05), name
+
+
+def test_a_shaft_begins_twisted_where_a_gap_is_searched_for_beside_it(
+    folder: Path, executor: Executor
+) -> None:
+    """The model that holds all candidates has a gap without width, in which no place is twisted."""
+    rigid = read_platform(folder / "platform.toml")
+    behind = next(
+        one.platform
+        for one in structures(rigid)[0]
+        if one.keys == ("shaft_compliance@pan",) and one.notes[0].endswith("at the joint")
+    )
+    logs = read_logs(log_files(sorted(folder.glob("*.csv"))), behind)
+    for platform in (behind, with_candidates(behind)):
+        model = model_of(platform)
+        problem = problem_for(behind, model, logs, logs, (), executor, lambda text: None)
+        for run in problem.whole:
+            assert "theta_gear_pan" in [unknown.name for unknown in run.unknowns]
 
 
 def test_friction_is_moved_behind_a_shaft_that_is_declared(

@@ -61,6 +61,22 @@ def test_a_spring_is_found_over_windows_where_no_set_leaves_only_noise(tmp_path:
     assert "cable_spring@pan" in found.chosen.keys
 
 
+def test_a_brief_search_goes_on_to_what_the_whole_one_finds(tmp_path: Path) -> None:
+    with spring_table(tmp_path, gust=0.05, lasting=10) as problem:
+        brief = roads.search(problem, brief=True)
+        found = roads.continued(problem, brief)
+    assert brief.is_brief and not brief.is_over_windows
+    assert found.is_over_windows and not found.is_brief
+    assert "cable_spring@pan" in found.chosen.keys
+
+
+def test_a_brief_search_that_found_all_is_not_gone_on_with(tmp_path: Path) -> None:
+    with spring_table(tmp_path) as problem:
+        brief = roads.search(problem, brief=True)
+        assert roads.continued(problem, brief) is brief
+    assert brief.chosen.keys == ("cable_spring@pan",)
+
+
 def test_a_search_whose_time_is_over_ends_with_what_the_rows_proposed(
     tmp_path: Path,
 ) -> None:

@@ -1,5 +1,5 @@
 """Which structures are fitted to their end: the better half, or of it those that come near one that
-leaves noise alone.
+leaves noise alone; and beside which of them terms are searched for.
 """
 
 from dataclasses import dataclass, replace
@@ -103,3 +103,38 @@ def test_of_friction_on_either_side_the_side_that_is_far_behind_is_left(
     assert found == (1, 2), "two of the four that are left; the shaft before friction is none"
     found = structure_fits._better_half(cast(Any, [*every, Begun(1.0)]), cast(Any, every[0]))
     assert found == (5, 1, 2)
+
+
+SHAFT, HARMONIC, GAP, LAG = (
+    Begun(error, keys=(key,), provides=frozenset(provides))
+    for error, key, *provides in (
+        (2.0, "shaft_compliance@pan", "shaft pan"),
+        (1.99, "harmonic_drive@pan", "shaft pan"),
+        (1.98, "backlash@pan", "shaft pan", "change half_gap_pan"),
+        (9.0, "actuator_lag@pan", "change amplifier_voltage_pan"),
+    )
+)
+
+
+def followed(order: list[Begun], monkeypatch: pytest.MonkeyPatch) -> list[Begun]:
+    """Those that go on into the search for terms, where a tenth less error is better."""
+    monkeypatch.setattr(
+        structure_fits, "is_better", lambda one, other: one.error < 0.9 * other.error
+    )
+    fitted = structure_fits.Fitted(cast(Any, None), (), (), {})
+    fitted.__dict__["order"] = order
+    return cast(Any, fitted.followed)
+
+
+def test_none_goes_on_that_has_all_of_another_and_predicts_no_better(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert followed([SHAFT, HARMONIC, GAP, LAG], monkeypatch) == [SHAFT, LAG]
+
+
+def test_one_that_has_more_than_another_goes_on_where_it_predicts_better(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    gap = replace(GAP, error=1.0)
+    assert followed([gap, SHAFT, LAG], monkeypatch) == [gap, SHAFT]
+    assert followed([SHAFT, gap, LAG], monkeypatch) == [SHAFT, gap]

@@ -8,9 +8,15 @@ import pytest
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models.structures import structures, to_scale, with_what_leads
-from ptp_symbolic.models.variants import candidate_effects, that_cannot_stand, with_candidates
+from ptp_symbolic.models.variants import (
+    candidate_effects,
+    extended,
+    that_cannot_stand,
+    with_candidates,
+)
 from ptp_symbolic.platform import (
     EffectDeclaration,
+    ParameterDeclaration,
     Platform,
     SignalDeclaration,
     effect_key,
@@ -228,3 +234,13 @@ def test_starts_are_in_the_scale_of_a_heavy_axis() -> None:
         assert after == pytest.approx({name: 1000.0 * value for name, value in before.items()})
     declared = {p.name: p.value for p in heavy.platform.parameters}
     assert declared == heavy.starts[0]
+
+
+def test_what_is_declared_as_known_stays_so_whatever_a_fit_beside_it_moved() -> None:
+    own = (
+        ParameterDeclaration("J_pan", "kg m^2", 0.2, free=True),
+        ParameterDeclaration("R_pan", "ohm", 1.0),
+    )
+    platform = replace(platform_of(*BODIES, *SERVO), parameters=own)
+    begun = extended(platform, (), {"J_pan": 0.3, "R_pan": 0.98}, ())
+    assert {p.name: p.value for p in begun.parameters} == {"J_pan": 0.3, "R_pan": 1.0}

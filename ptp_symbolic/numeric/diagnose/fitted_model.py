@@ -186,8 +186,15 @@ def fitted(
     names = {name for f in free for name in f.names}
     fixed = {name: value for name, value in problem.fixed.items() if name not in names}
     tolerance = tolerance_for(problem, share)
-    below, straight = problem.robust_below, share < ROUGH
-    effort = Effort(iterations, MATERIAL * share, tolerance, secants, block, below, straight)
+    effort = Effort(
+        iterations,
+        MATERIAL * share,
+        tolerance,
+        secants,
+        block,
+        problem.robust_below,
+        straight=share < ROUGH,
+    )
     known = None if secants is None else _inherited(parent, free)
     fit = fit_parameters(
         problem.model, problem.train, free, fixed, z, effort, executor, known, earlier
