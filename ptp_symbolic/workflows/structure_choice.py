@@ -14,7 +14,6 @@ from ptp_symbolic.numeric.diagnose.fitted_model import (
     FittedModel,
     SearchProblem,
     deviances,
-    ranked,
 )
 from ptp_symbolic.numeric.diagnose.gain import (
     Gain,
@@ -36,9 +35,9 @@ from ptp_symbolic.numeric.diagnose.structures import (
     is_better,
     named_effects,
     on_runs_of,
+    structure_row,
     why_rejected,
 )
-from ptp_symbolic.numeric.diagnose.summary import ranking_row
 from ptp_symbolic.numeric.diagnose.verdict import (
     Verdict,
     decide,
@@ -124,6 +123,9 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     Once their allowance is over nothing new is begun; structures that were fitted are searched
     briefly.
 
+    Where terms leave noise alone and a delay is among them, structures are fitted beside the others:
+    a lag may be what it was named for.
+
     All searches are brief at first. The whole one follows where no answer is found soon: of the
     structure that fits best, and of the declared one where that is beaten by little.
     """
@@ -148,7 +150,11 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
         return Choice(terms.decided, terms.decided, (), untried, is_cut_short)
     known = terms.found.chosen.values if terms.is_noise_alone else None
     beside = None if terms.is_noise_alone else _with_found(platform, terms)
-    fitted = fit_structures(platform, every, logs, known, terms.found if beside else None)
+    there = _with_found(platform, terms) if terms.is_noise_alone and _late(terms) else None
+    if there is not None:
+        fitted = fit_structures(there, in_scale(structures(there)[0], platform), logs)
+    else:
+        fitted = fit_structures(platform, every, logs, known, terms.found if beside else None)
     if not terms.is_noise_alone and not fitted.quiet and not logs.allowance.is_over:
         again = _fitted_beside(platform, beside, fitted, logs) if beside else None
         again = again or _led(platform, every, fitted, logs)
@@ -172,7 +178,10 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     alike = _alike(chosen, fitted)
     own = set(effect_keys(platform))
     leading = [e.title for e in fitted.declared.problem.model.effects if e.key not in own]
-    rows = tuple(_row(s, fitted.declared, chosen, refused, alike, leading) for s in [*order, *rest])
+    named = chosen.structure
+    rows = tuple(
+        structure_row(s, fitted.declared, named, refused, alike, leading) for s in [*order, *rest]
+    )
     is_cut_short = is_late or any(s.found.is_cut_short for s in [terms, *outcomes])
     return Choice(chosen, terms.decided, rows, {**untried, **fitted.failed}, is_cut_short)
 
@@ -188,11 +197,11 @@ def _with_found(platform: Platform, one: Searched) -> Platform | None:
     among them, for it makes up for the lag of a structure.
     """
     trial, own = one.found.chosen, {(e.effect, e.axis) for e in candidate_effects(platform)}
-    late = {trial.fit.model.parameter_names[k] for k in trial.fit.model.input_delays if k >= 0}
+    late = _late(one)
     kept = tuple(
         c
         for c in trial.candidates
-        if c.is_declared_value or ((c.id, c.axis) in own and not late & set(c.parameters))
+        if c.is_declared_value or ((c.id, c.axis) in own and c.key not in late)
     )
     if all(c.is_declared_value for c in kept):
         return None
@@ -200,6 +209,13 @@ def _with_found(platform: Platform, one: Searched) -> Platform | None:
     if not gain(trial, without).is_most:
         return None
     return with_effects(platform, replace(trial, candidates=kept))
+
+
+def _late(one: Searched) -> set[str]:
+    """Keys of the delays that a search found."""
+    trial = one.found.chosen
+    late = {trial.fit.model.parameter_names[k] for k in trial.fit.model.input_delays if k >= 0}
+    return {c.key for c in trial.candidates if late & set(c.parameters)}
 
 
 def _fitted_beside(
@@ -341,10 +357,14 @@ def _size_of(one: Searched) -> int:
 
 def _best_fit(searches: Sequence[Searched]) -> Searched:
     """The search that ends with the best fit, in the windows of the first one."""
-    pattern = searches[0].found.chosen.fit.runs
-    trials = [on_runs_of(s.found.problem, s.found.chosen, pattern) for s in searches]
-    cost = deviances(trials)
-    return searches[min(range(len(cost)), key=lambda k: cost[k])]
+    return searches[_least([(s.found.problem, s.found.chosen) for s in searches])]
+
+
+def _least(ends: Sequence[tuple[SearchProblem, FittedModel]]) -> int:
+    """Which of some trials, each of its own problem, fits best in the windows of the first one."""
+    pattern = ends[0][1].fit.runs
+    cost = deviances([on_runs_of(problem, trial, pattern) for problem, trial in ends])
+    return min(range(len(cost)), key=cost.__getitem__)
 
 
 def _not_far_behind(outcomes: Sequence[Searched]) -> Sequence[Searched]:
@@ -410,7 +430,7 @@ def _chosen(
     """The outcome that predicts best, and why structures that were followed are not named."""
     others = fitted.every
     refused: dict[FittedStructure, str] = {}
-    accepted: list[Outcome] = []
+    accepted: list[tuple[Outcome, Outcome]] = []
     as_good: list[Alternative] = []
     for outcome in outcomes:
         structure = outcome.structure
@@ -428,7 +448,7 @@ def _chosen(
         if why is None:
             named = _with_structure(outcome, terms, earned, fitted, logs)
             if _is_borne_out(named, quiet):
-                accepted.append(named)
+                accepted.append((outcome, named))
                 continue
             why = "reduces the error of the validation runs too little, or not significantly"
         if terms.verdict.final.candidates:
@@ -441,8 +461,8 @@ def _chosen(
                 as_good.append(Alternative(replace(other, candidates=candidates), against))
         refused[structure] = why
     if accepted:
-        best = ranked([o.verdict.final for o in accepted])[0] if len(accepted) > 1 else None
-        return next(o for o in accepted if best is None or o.verdict.final is best), refused
+        ends = [(o.found.problem, o.verdict.final) for o, _ in accepted]
+        return accepted[_least(ends)][1], refused
     if as_good:
         return _beside(terms, as_good), refused
     return terms, refused
@@ -556,44 +576,3 @@ def _is_borne_out(named: Outcome, quiet: bool) -> bool:
     """Whether the validation runs bear out the final model, structure and terms together."""
     held_out = named.verdict.held_out
     return held_out is not None and is_validated(held_out, quiet, False, named.problem.material)
-
-
-def _row(
-    structure: FittedStructure,
-    declared: FittedStructure,
-    chosen: Outcome,
-    refused: Mapping[FittedStructure, str],
-    alike: Sequence[FittedStructure],
-    beside: Sequence[str],
-) -> dict[str, Any]:
-    """A row of the ranking for a structure before a search for terms; `alike` are the alternatives
-    of the chosen one, `beside` the titles of what all were fitted with.
-    """
-    failed = structure.trial.fit.failed
-    accepted = structure is chosen.structure
-    if accepted:
-        why = "the structure of the final model: it predicts blocks left out significantly better"
-    elif failed:
-        why = f"the fit failed: {failed}"
-    elif structure in alike and structure not in refused:
-        why = "cannot be told from the chosen structure by these logs, before terms were searched"
-    else:
-        why = refused.get(structure) or _why_not_followed(structure, declared, chosen.structure)
-    earned = None if failed else gain_over(structure, declared)
-    row = ranking_row(structure.added, structure.trial, earned, accepted, why)
-    title = " and ".join(c.title for c in structure.with_parameters)
-    title += f", beside {' and '.join(beside)}" if beside else ""
-    return {**row, "title": title, "structure": list(structure.keys)}
-
-
-def _why_not_followed(
-    structure: FittedStructure, declared: FittedStructure, chosen: FittedStructure | None
-) -> str:
-    if chosen is not None and chosen.provides <= structure.provides:
-        return (
-            "has all mechanisms of the chosen structure, which fits better, or as well with fewer"
-            " parameters"
-        )
-    if gain_over(structure, declared).is_better(structure.problem.material):
-        return "predicts better than the declared structure; those searched on fitted better"
-    return "does not predict significantly better than the declared structure"

@@ -88,12 +88,15 @@ class Fitted:
         return list(distinct.values())[:FOLLOWED]
 
     def over_windows_too(self, logs: Logs) -> "Fitted":
-        """The declared structure and the better half fitted over windows."""
+        """The declared structure and the better half fitted over windows, of many structures the
+        best few.
+        """
         logs.progress("fitting structures over windows")
+        best = sorted(self.better, key=lambda k: deviance(self.every[k], self.declared))
         return replace(
             self,
             declared=self.declared.over_windows_too(),
-            every=_each(FittedStructure.over_windows_too, self.every, self.better),
+            every=_each(FittedStructure.over_windows_too, self.every, best[: 3 * FOLLOWED]),
         )
 
 

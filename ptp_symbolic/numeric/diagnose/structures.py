@@ -39,6 +39,7 @@ from ptp_symbolic.numeric.diagnose.refits import (
     sharpened,
 )
 from ptp_symbolic.numeric.diagnose.stepwise import Search, Tried, is_earned
+from ptp_symbolic.numeric.diagnose.summary import ranking_row
 from ptp_symbolic.numeric.identify.constants import SCREENED
 from ptp_symbolic.numeric.identify.evidence import Allowance
 from ptp_symbolic.numeric.identify.intervals import estimates
@@ -350,3 +351,44 @@ def why_rejected(
     if not is_moved_by_inputs(replace(problem, train=trial.fit.runs), trial):
         return earned, "with it the simulated motion no longer depends on the inputs"
     return earned, None
+
+
+def structure_row(
+    structure: FittedStructure,
+    declared: FittedStructure,
+    chosen: FittedStructure | None,
+    refused: Mapping[FittedStructure, str],
+    alike: Sequence[FittedStructure],
+    beside: Sequence[str],
+) -> dict[str, Any]:
+    """A row of the ranking for a structure before a search for terms; `alike` are the alternatives
+    of the chosen one, `beside` the titles of what all were fitted with.
+    """
+    failed = structure.trial.fit.failed
+    accepted = structure is chosen
+    if accepted:
+        why = "the structure of the final model: it predicts blocks left out significantly better"
+    elif failed:
+        why = f"the fit failed: {failed}"
+    elif structure in alike and structure not in refused:
+        why = "cannot be told from the chosen structure by these logs, before terms were searched"
+    else:
+        why = refused.get(structure) or _why_not_followed(structure, declared, chosen)
+    earned = None if failed else gain_over(structure, declared)
+    row = ranking_row(structure.added, structure.trial, earned, accepted, why)
+    title = " and ".join(c.title for c in structure.with_parameters)
+    title += f", beside {' and '.join(beside)}" if beside else ""
+    return {**row, "title": title, "structure": list(structure.keys)}
+
+
+def _why_not_followed(
+    structure: FittedStructure, declared: FittedStructure, chosen: FittedStructure | None
+) -> str:
+    if chosen is not None and chosen.provides <= structure.provides:
+        return (
+            "has all mechanisms of the chosen structure, which fits better, or as well with fewer"
+            " parameters"
+        )
+    if gain_over(structure, declared).is_better(structure.problem.material):
+        return "predicts better than the declared structure; those searched on fitted better"
+    return "does not predict significantly better than the declared structure"
