@@ -123,11 +123,12 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     Once their allowance is over nothing new is begun; structures that were fitted are searched
     briefly.
 
-    Where terms leave noise alone and a delay is among them, structures are fitted beside the others:
-    a lag may be what it was named for.
+    Where terms leave noise alone and a delay is among them, structures are fitted beside the
+    others: a lag may be what it was named for.
 
-    All searches are brief at first. The whole one follows where no answer is found soon: of the
-    structure that fits best, and of the declared one where that is beaten by little.
+    All searches are brief at first. The whole one follows where that leaves noise alone in most
+    windows, not in all; and where no answer is found soon, of the structure that fits best, and of
+    the declared one where that is beaten by little.
     """
     every, untried = structures(platform)
     untried |= variants.that_cannot_stand(platform)
@@ -137,7 +138,8 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     def searched(structure: FittedStructure | None, begin: Searched | None = None) -> Searched:
         logs.progress(f"searching for terms beside {_name(structure)}")
         there = platforms[structure.keys, structure.provides] if structure else platform
-        return _searched(there, structure, logs, begin, brief=bool(every))
+        found = _searched(there, structure, logs, begin, brief=bool(every))
+        return _continued(found, logs) if found.is_noise_alone else found
 
     terms = searched(None)
     is_enough = terms.is_noise_alone and not terms.found.chosen.candidates
@@ -335,6 +337,8 @@ def _at_length(
 
 def _continued(one: Searched, logs: Logs) -> Searched:
     """The search, in whole where it was brief."""
+    if not one.found.is_brief:
+        return one
     logs.progress(f"searching on for terms beside {_name(one.structure)}")
     problem = replace(one.problem, allowance=logs.allowance.rest(LEAST_SHARE))
     return replace(one, found=continued(problem, one.found))
