@@ -143,8 +143,9 @@ def test_what_needs_the_structure_is_no_effect_of_the_platform_without_it(
     """A gap is found beside a shaft; a rigid gear cannot have it."""
 
     def candidate(effect: str, parameter: str) -> Any:
+        key, own = f"{effect}@pan", (parameter,)
         return SimpleNamespace(
-            id=effect, axis="pan", is_declared_value=False, parameters=(parameter,)
+            id=effect, axis="pan", key=key, is_declared_value=False, parameters=own
         )
 
     gap = candidate("backlash", "gap_pan")
