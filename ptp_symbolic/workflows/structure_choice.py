@@ -56,6 +56,7 @@ from ptp_symbolic.workflows.structure_fits import (
     leading_platform,
 )
 
+FAR_BEHIND = "with terms beside it, the best leaves surely less than half of its squared error"
 LEAST_SHARE = 0.1  # of the allowance, for the brief search beside a structure that fits well
 
 
@@ -173,8 +174,9 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     is_late = not terms.is_noise_alone and logs.allowance.is_over
     if not terms.is_noise_alone and not is_late:
         outcomes, terms = _at_length(outcomes, terms, logs)
-    ends = [s.decided for s in _not_far_behind(outcomes)]
-    chosen, refused = _chosen(terms.decided, ends, fitted, logs)
+    left = _not_far_behind(outcomes)
+    chosen, refused = _chosen(terms.decided, [s.decided for s in left], fitted, logs)
+    refused |= {s.structure: FAR_BEHIND for s in outcomes if s.structure and s not in left}
     order = fitted.order
     rest = [s for s in fitted.every if s not in order]
     alike = _alike(chosen, fitted)

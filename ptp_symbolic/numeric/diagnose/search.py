@@ -315,7 +315,7 @@ def search(problem: SearchProblem, *, brief: bool = False) -> Search:
     problem = with_fewer_samples(problem, proposals.start)
     problem.progress("fitting the declared model")
     if not problem.windows:
-        return _over_windows(problem, proposals, None, brief)
+        return _over_windows(problem, proposals, None, brief=brief)
     stepwise = _seeker(*over_whole_runs(problem, proposals), proposals)
     before = stepwise.declared
     stepwise, found = _with_lines(stepwise, _soon_found(stepwise), _soon_found)
@@ -325,7 +325,7 @@ def search(problem: SearchProblem, *, brief: bool = False) -> Search:
         best = stepwise.pruned(ranked([stepwise.declared, *found])[0])
         return replace(_ended(stepwise, *best), is_over_windows=False, is_brief=True)
     problem = replace(problem, candidates=stepwise.problem.candidates)
-    return _over_windows(problem, stepwise.proposals, before, brief)
+    return _over_windows(problem, stepwise.proposals, before)
 
 
 def continued(problem: SearchProblem, begun: Search) -> Search:
@@ -336,11 +336,15 @@ def continued(problem: SearchProblem, begun: Search) -> Search:
         return search(problem)
     problem = with_fewer_samples(problem, begun.proposals.start)
     problem = replace(problem, candidates=begun.problem.candidates)
-    return _over_windows(problem, begun.proposals, begun.declared, brief=False)
+    return _over_windows(problem, begun.proposals, begun.declared)
 
 
 def _over_windows(
-    problem: SearchProblem, proposals: ProposedSets, before: FittedModel | None, brief: bool
+    problem: SearchProblem,
+    proposals: ProposedSets,
+    before: FittedModel | None,
+    *,
+    brief: bool = False,
 ) -> Search:
     """The search over windows; `before` is the declared model fitted over whole runs."""
     problem.progress("fitting the declared model over windows")
