@@ -51,6 +51,11 @@ class Rebuilt:
         """Keys of the added effects, e.g. ``backlash@pan``."""
         return tuple(effect_key(e.effect, e.axis) for e in self.added)
 
+    @property
+    def axes(self) -> frozenset[str | None]:
+        """Axes of the added effects; None for one of the whole platform."""
+        return frozenset(e.axis for e in self.added)
+
 
 BEHIND = "joint"  # the site of friction behind a shaft or a gap
 SPLITTING = ("shaft", "play")  # mechanisms that leave friction at the gear, or behind them

@@ -36,6 +36,7 @@ from ptp_symbolic.numeric.diagnose.structures import (
     named_effects,
     on_runs_of,
     structure_row,
+    unaffected_axes,
     why_rejected,
 )
 from ptp_symbolic.numeric.diagnose.verdict import (
@@ -57,7 +58,8 @@ from ptp_symbolic.workflows.structure_fits import (
 )
 
 FAR_BEHIND = "with terms beside it, the best leaves surely less than half of its squared error"
-LEAST_SHARE = 0.1  # of the allowance, for the brief search beside a structure that fits well
+IDLE = "not tried: nothing is left to explain on this axis"
+LEAST_SHARE = 0.1  # of the allowance, for a search beside a structure that fits well
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,16 +123,18 @@ class Choice:
 def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     """Search for terms of the declared platform, and where that adds any or leaves more than noise
     fit every structure one step away from it; search for terms in the best of them too, and choose.
-    Once their allowance is over nothing new is begun; structures that were fitted are searched
-    briefly.
+    Once their allowance is over nothing new is begun, and no further fits of structures where it
+    does not pay for as much as the first took; those that fit best are searched all the same.
 
     Where terms leave noise alone and a delay is among them, structures are fitted beside the
-    others: a lag may be what it was named for.
+    others: a lag may be what it was named for. None are on an axis of which nothing is left to
+    explain.
 
     All searches are brief at first. The whole one follows where that leaves noise alone in most
     windows, not in all; and where no answer is found soon, of the structure that fits best, and of
     the declared one where that is beaten by little.
     """
+    logs = replace(logs, declared={p.name: p.value for p in platform.parameters if p.free})
     every, untried = structures(platform)
     untried |= variants.that_cannot_stand(platform)
     every = in_scale(every, platform)
@@ -151,14 +155,20 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
         untried = {**untried, **{key: why for each in every for key in each.keys}}
         is_cut_short = is_stopped or terms.found.is_cut_short
         return Choice(terms.decided, terms.decided, (), untried, is_cut_short)
+    idle = unaffected_axes(terms.found, terms.is_noise_alone)
+    untried |= {key: IDLE for r in every if r.axes <= idle for key in r.keys}
+    every = tuple(r for r in every if not r.axes <= idle)
     known = terms.found.chosen.values if terms.is_noise_alone else None
     beside = None if terms.is_noise_alone else _with_found(platform, terms)
     there = _with_found(platform, terms) if terms.is_noise_alone and _late(terms) else None
+    before = logs.allowance.work.samples
     if there is not None:
-        fitted = fit_structures(there, in_scale(structures(there)[0], platform), logs)
+        beside_late = _on_axes_of(every, in_scale(structures(there)[0], platform))
+        fitted = fit_structures(there, beside_late, logs)
     else:
         fitted = fit_structures(platform, every, logs, known, terms.found if beside else None)
-    if not terms.is_noise_alone and not fitted.quiet and not logs.allowance.is_over:
+    is_paid = logs.allowance.pays_for(logs.allowance.work.samples - before) >= 1.0
+    if not terms.is_noise_alone and not fitted.quiet and is_paid:
         again = _fitted_beside(platform, beside, fitted, logs) if beside else None
         again = again or _led(platform, every, fitted, logs)
         fitted = again or fitted.over_windows_too(logs)
@@ -172,7 +182,7 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     if not terms.is_noise_alone:
         fitted, outcomes = _followed_on(platform, fitted, outcomes, searched, logs)
     is_late = not terms.is_noise_alone and logs.allowance.is_over
-    if not terms.is_noise_alone and not is_late:
+    if not terms.is_noise_alone and not logs.allowance.is_out_of_time:
         outcomes, terms = _at_length(outcomes, terms, logs)
     left = _not_far_behind(outcomes)
     chosen, refused = _chosen(terms.decided, [s.decided for s in left], fitted, logs)
@@ -193,6 +203,12 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
 def _platforms(every: Sequence[Rebuilt]) -> dict[tuple[tuple[str, ...], frozenset[str]], Platform]:
     """The platforms of structures by keys and mechanisms: kinds of one effect have one key."""
     return {(rebuilt.keys, rebuilt.provides): rebuilt.platform for rebuilt in every}
+
+
+def _on_axes_of(every: Sequence[Rebuilt], others: Sequence[Rebuilt]) -> tuple[Rebuilt, ...]:
+    """Those of other structures that are on axes of `every`."""
+    axes = {axis for rebuilt in every for axis in rebuilt.axes}
+    return tuple(rebuilt for rebuilt in others if rebuilt.axes <= axes)
 
 
 def _with_found(platform: Platform, one: Searched) -> Platform | None:
@@ -293,7 +309,7 @@ def _paired(
         return fitted, ()
     declared = next(r for r in every if (r.keys, r.provides) == (best.keys, best.provides))
     there = variants.extended(declared.platform, (), best.trial.values, ())
-    beside = in_scale(pairs(replace(declared, platform=there)), there)
+    beside = in_scale(_on_axes_of(every, pairs(replace(declared, platform=there))), there)
     logs.progress(f"fitting pairs with {' + '.join(best.keys)}")
     found = fit_structures(there, beside, logs)
     if not found.quiet:
@@ -422,11 +438,9 @@ def _searched(
         logs.progress,
         logs.allowance.rest(LEAST_SHARE),
     )
-    declared_starts = {p.name: p.value for p in platform.parameters}
-    problem = replace(
-        problem,
-        free=tuple(replace(f, declared_start=declared_starts[f.name]) for f in problem.free),
-    )
+    starts = {p.name: p.value for p in platform.parameters} | dict(logs.declared)
+    free = tuple(replace(f, declared_start=starts[f.name]) for f in problem.free)
+    problem = replace(problem, free=free)
     return Searched(platform, structure, problem, search(problem, brief=brief))
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -40,13 +40,16 @@ FOLLOWED = 2  # structures that go on into the search for terms where none leave
 
 @dataclass(frozen=True, eq=False)
 class Logs:
-    """What every structure is fitted to and judged by, and the allowance of the diagnosis."""
+    """What every structure is fitted to and judged by, the allowance of the diagnosis, and the
+    starts that are `declared`.
+    """
 
     train: tuple[Log, ...]
     validate: tuple[Log, ...]
     executor: Executor
     progress: Progress
     allowance: Allowance
+    declared: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,15 +92,16 @@ class Fitted:
 
     def over_windows_too(self, logs: Logs) -> "Fitted":
         """The declared structure and the better half fitted over windows, of many structures the
-        best few.
+        best few, and no more than the allowance pays for.
         """
         logs.progress("fitting structures over windows")
         best = sorted(self.better, key=lambda k: deviance(self.every[k], self.declared))
-        return replace(
-            self,
-            declared=self.declared.over_windows_too(),
-            every=_each(FittedStructure.over_windows_too, self.every, best[: 3 * FOLLOWED]),
-        )
+        declared = self.declared.over_windows_too()
+        before = logs.allowance.work.samples
+        every = _each(FittedStructure.over_windows_too, self.every, best[:1])
+        others = _affordable(best[1 : 3 * FOLLOWED], before, logs.allowance)
+        every = _each(FittedStructure.over_windows_too, every, others)
+        return replace(self, declared=declared, every=every)
 
 
 def fit_structures(
@@ -114,10 +118,14 @@ def fit_structures(
 
     They are started beside the parameters `known` from a fit that leaves noise alone, else beside
     those of the platform's: where a delay makes up for a lag, the former are right, the latter not.
+    And beside the declared starts where others are the platform's now: viscous friction on one side
+    of a gear has gone to the other where only their sum is known, and a shaft needs it.
+    Until they are fitted to their end, they are compared in the runs of the platform begun.
     """
     usual = [rebuilt for rebuilt in every if not rebuilt.of]
     logs.progress(f"fitting {len(usual)} structures one step away")
-    declared = _begun(platform, None, logs, {}).finished()
+    at_first = _begun(platform, None, logs, {})
+    declared = at_first.finished()
     beside = declared.trial.values if known is None else known
 
     def one(rebuilt: Rebuilt) -> FittedStructure | str:
@@ -128,16 +136,16 @@ def fit_structures(
 
     results = list(zip(usual, side_by_side(one, usual), strict=True))
     first = [(r, b) for r, b in results if isinstance(b, FittedStructure)]
-    first.sort(key=lambda pair: deviance(pair[1], declared))
+    first.sort(key=lambda pair: deviance(pair[1], at_first))
     versions = {r.provides for r, _ in first[: max(FOLLOWED, (len(first) + 1) // 2)]}
     further = [rebuilt for rebuilt in every if rebuilt.of in versions]
     results += zip(further, side_by_side(one, further), strict=True)
     begun = [b for _, b in results if isinstance(b, FittedStructure)]
-    better = _better_half(begun, declared)
+    better = _better_half(begun, at_first)
     logs.progress(f"fitting the better {len(better)} of them to their end")
     tried = {key for b in begun for key in b.keys}
     failed = {r.keys[0]: b for r, b in results if isinstance(b, str) and r.keys[0] not in tried}
-    finished = _finished(begun, better, declared, rival)
+    finished = _finished(begun, better, at_first, declared, rival)
     return Fitted(declared, _from_those_that_contain(finished, better, declared), better, failed)
 
 
@@ -195,21 +203,33 @@ def leading_platform(
 def _finished(
     begun: Sequence[FittedStructure],
     better: Sequence[int],
+    at_first: FittedStructure,
     declared: FittedStructure,
     rival: Search | None = None,
 ) -> tuple[FittedStructure, ...]:
     """The structures, those in `better`, the best first, fitted to their end; where the best leaves
-    noise alone, of the others those that come near it, and none where the best is far from a
-    `rival`.
+    noise alone, of the others those that come near it in the runs `at_first`, and none where the
+    best is far from a `rival`; as many as the allowance pays for.
     """
-    every, others = _each(FittedStructure.finished, begun, better[:1]), better[1:]
+    allowance = declared.problem.allowance
+    before = allowance.work.samples
+    every = _each(FittedStructure.finished, begun, better[:1])
+    others = _affordable(better[1:], before, allowance)
     best = every[better[0]] if better else None
     if best is None or (rival and not comes_near(best, rival.problem, rival.chosen, declared)):
         return every
     if best.is_noise_alone:
         every = _each(FittedStructure.further, every, others)
-        others = [k for k in others if is_near(every[k], best, declared)]
+        others = [k for k in others if is_near(every[k], best, at_first)]
     return _each(FittedStructure.finished, every, others)
+
+
+def _affordable(which: Sequence[int], begun: int, allowance: Allowance) -> list[int]:
+    """As many of them, the first first, as an allowance pays for if each costs what was simulated
+    since it had simulated `begun` samples.
+    """
+    each = allowance.work.samples - begun
+    return list(which[: int(min(allowance.pays_for(each), len(which)))])
 
 
 def _begun(
@@ -226,23 +246,25 @@ def _begun(
         logs.progress,
         logs.allowance,
     )
+    moved = any(f.start != logs.declared.get(f.name, f.start) for f in problem.free)
+    others = (known, logs.declared) if moved else (known,)
     if rebuilt is None:
-        return begin_structure((), frozenset(), problem, (), known)
+        return begin_structure((), frozenset(), problem, (), others)
     keys, provides, starts = rebuilt.keys, rebuilt.provides, rebuilt.starts
-    return begin_structure(keys, provides, problem, starts, known, rebuilt.notes)
+    return begin_structure(keys, provides, problem, starts, others, rebuilt.notes)
 
 
-def _better_half(begun: Sequence[FittedStructure], declared: FittedStructure) -> tuple[int, ...]:
-    """Which structures fit better than half of them, at least as many as are followed; a side of
-    friction or encoder that is far behind another is left out.
+def _better_half(begun: Sequence[FittedStructure], at_first: FittedStructure) -> tuple[int, ...]:
+    """Which structures fit better than half of them, in the runs `at_first`, at least as many as
+    are followed; a side of friction or encoder that is far behind another is left out.
     """
-    cost = [deviance(b, declared) for b in begun]
+    cost = [deviance(b, at_first) for b in begun]
     ahead: dict[Family, FittedStructure] = {}
     left = []
     for k in sorted(range(len(begun)), key=cost.__getitem__):
         one = begun[k]
         first = ahead.setdefault(family(one.keys, one.provides), one)
-        if is_near(one, first, declared):
+        if is_near(one, first, at_first):
             left.append(k)
     return tuple(left[: max(FOLLOWED, (len(left) + 1) // 2)])
 

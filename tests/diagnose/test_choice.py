@@ -7,8 +7,10 @@ from typing import Any, cast
 
 import pytest
 
+from ptp_symbolic.numeric.identify.evidence import Allowance
 from ptp_symbolic.workflows import structure_choice
 from ptp_symbolic.workflows.structure_choice import Searched
+from ptp_symbolic.workflows.structure_fits import Logs
 
 
 def with_terms(*keys: str, is_brief: bool = False) -> Any:
@@ -34,7 +36,9 @@ def test_a_brief_search_goes_on_where_most_windows_show_noise_alone(
         raise RuntimeError("structures are fitted")
 
     patch = monkeypatch.setattr
-    structure = SimpleNamespace(keys=("shaft",), provides=frozenset({"shaft"}), platform=None)
+    structure = SimpleNamespace(
+        keys=("shaft",), provides=frozenset({"shaft"}), platform=None, axes=frozenset({"pan"})
+    )
     patch(structure_choice, "structures", lambda platform: ((structure,), {}))
     patch(structure_choice.variants, "that_cannot_stand", lambda platform: {})
     patch(structure_choice, "in_scale", lambda every, platform: every)
@@ -47,16 +51,18 @@ def test_a_brief_search_goes_on_where_most_windows_show_noise_alone(
     patch(structure_choice, "_searched", lambda *given, **options: search)
     patch(structure_choice, "continued", whole)
     patch(structure_choice, "_with_found", lambda *given: None)
+    patch(structure_choice, "unaffected_axes", lambda *given: frozenset())
     patch(structure_choice, "fit_structures", fitted)
-    allowance = SimpleNamespace(is_out_of_time=False, rest=lambda least: None)
-    logs = cast(Any, SimpleNamespace(progress=lambda text: None, allowance=allowance))
+    allowance = Allowance()
+    logs = Logs((), (), cast(Any, None), lambda text: None, allowance)
+    platform = cast(Any, SimpleNamespace(parameters=()))
     if is_noise_alone:
-        choice = structure_choice.chosen_structure(cast(Any, None), logs)
+        choice = structure_choice.chosen_structure(platform, logs)
         assert begun == [brief]
         assert choice.untried["shaft"].endswith("the declared structure is noise alone")
     else:
         with pytest.raises(RuntimeError, match="structures are fitted"):
-            structure_choice.chosen_structure(cast(Any, None), logs)
+            structure_choice.chosen_structure(platform, logs)
         assert not begun
 
 

@@ -1,11 +1,15 @@
 """Which structures may be named: what the logs say of their parameters."""
 
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any, cast
+
 import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.fitted_model import FittedModel
-from ptp_symbolic.numeric.diagnose.structures import is_identifiable, is_there
+from ptp_symbolic.numeric.diagnose.structures import is_identifiable, is_there, unaffected_axes
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.straight import finished
 
@@ -31,3 +35,30 @@ def test_a_stiffness_that_the_logs_bound_is_there_though_they_do_not_tell_it(
     assert is_identifiable(effect, trial) is identifiable
     assert is_there(effect, trial, quiet=True) is there
     assert is_there(effect, trial, quiet=False) is identifiable
+
+
+@pytest.mark.parametrize(
+    ("pan", "tilt", "terms", "idle"),
+    [
+        (1.0, 1.0, [("spring", "pan")], {"tilt"}),
+        (3.0, 1.0, [], {"tilt"}),
+        (3.0, 1.0, [("tilted base", None)], {"tilt"}),
+        (3.0, 1.0, [("delay", "tilt")], set()),
+        (1.0, 1.0, [("tilted base", None)], set()),
+        (3.0, 3.0, [], set()),
+    ],
+)
+def test_an_axis_with_noise_and_no_term_has_no_structure(
+    pan: float, tilt: float, terms: list[tuple[str, str | None]], idle: set[str]
+) -> None:
+    """A term on the platform moves both axes: it hides no structure where more than noise is left
+    on one of them, and may stand for one where none is.
+    """
+    rng = np.random.default_rng(5)
+    fit = finished([np.array([pan, tilt]) * rng.standard_normal((400, 2)) for _ in range(3)])
+    runs = [replace(run, signals=("theta_pan", "theta_tilt")) for run in fit.runs]
+    model: Any = SimpleNamespace(module=SimpleNamespace(AXES=("pan", "tilt")))
+    found = tuple(Candidate(name, axis, "", "", (), {}) for name, axis in terms)
+    trial = FittedModel(found, replace(fit, runs=tuple(runs), model=model))
+    search = SimpleNamespace(chosen=trial, propagated=SimpleNamespace(most=np.zeros(2)))
+    assert unaffected_axes(cast(Any, search), pan == tilt == 1.0) == idle

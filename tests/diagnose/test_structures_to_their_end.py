@@ -6,9 +6,11 @@ from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any, cast
 
+import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.diagnose.structures import FittedStructure
+from ptp_symbolic.numeric.identify.evidence import Allowance, Work
 from ptp_symbolic.workflows import structure_fits
 
 
@@ -32,15 +34,17 @@ def finished(
     better: tuple[int, ...],
     monkeypatch: pytest.MonkeyPatch,
     rival: float | None = None,
+    allowed: float = np.inf,
 ) -> list[tuple[int, int]]:
-    """How often each structure was led further and to its end; further, one halves its error. A
-    `rival` without a structure has that error.
+    """How often each structure was led further and to its end; further, one halves its error, and
+    an end costs 100 samples. A `rival` without a structure has that error.
     """
 
     def further(one: Begun) -> Begun:
         return replace(one, further=one.further + 1, error=0.5 * one.error)
 
     def to_its_end(one: Begun) -> Begun:
+        work.samples += 100
         return replace(one, ends=one.ends + 1)
 
     def is_near(one: Begun, best: Begun, declared: Any) -> bool:
@@ -54,9 +58,11 @@ def finished(
 
     monkeypatch.setattr(structure_fits, "is_near", is_near)
     monkeypatch.setattr(structure_fits, "comes_near", comes_near)
-    every = cast(Any, [Begun(e) for e in errors])
+    work, every = Work(), cast(Any, [Begun(e) for e in errors])
+    problem = SimpleNamespace(allowance=Allowance(work, samples=allowed))
     search = None if rival is None else cast(Any, SimpleNamespace(problem=None, chosen=rival))
-    found = cast(Any, structure_fits._finished(every, better, every[0], search))
+    declared = cast(Any, SimpleNamespace(problem=problem))
+    found = cast(Any, structure_fits._finished(every, better, every[0], declared, search))
     return [(one.further, one.ends) for one in found]
 
 
@@ -77,6 +83,32 @@ def test_none_but_the_best_where_that_is_far_from_what_terms_explain(
     assert found == [(0, 0), (0, 1), (0, 0), (0, 0)]
     found = finished([9.0, 3.0, 6.0, 7.0], (1, 2, 3), monkeypatch, rival=2.0)
     assert found == [(0, 0), (0, 1), (0, 1), (0, 1)]
+
+
+def test_as_many_as_the_allowance_pays_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = finished([9.0, 1.5, 3.0, 7.0], (1, 2, 3), monkeypatch, allowed=250.0)
+    assert found == [(0, 0), (0, 1), (0, 1), (0, 0)]
+    found = finished([9.0, 1.5, 3.0, 7.0], (1, 2, 3), monkeypatch, allowed=50.0)
+    assert found == [(0, 0), (0, 1), (0, 0), (0, 0)]
+
+
+def test_a_structure_begins_beside_declared_starts_that_were_moved(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def begun(keys: Any, provides: Any, problem: Any, starts: Any, known: Any) -> Any:
+        return known
+
+    start = SimpleNamespace(name="b_pan", start=2e-5)
+    monkeypatch.setattr(structure_fits, "model_of", lambda platform: None)
+    monkeypatch.setattr(
+        structure_fits, "problem_for", lambda *arguments: SimpleNamespace(free=[start])
+    )
+    monkeypatch.setattr(structure_fits, "begin_structure", begun)
+    there: Any = structure_fits.Logs((), (), *cast(Any, [None] * 3))
+    for declared, others in (({"b_pan": 2.0}, [{"b_pan": 2.0}]), ({"b_pan": 2e-5}, []), ({}, [])):
+        logs = replace(there, declared=declared)
+        known = structure_fits._begun(cast(Any, None), None, logs, {"F_v_pan": 6.0})
+        assert list(cast(Any, known)) == [{"F_v_pan": 6.0}, *others]
 
 
 def test_without_any(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 from weakref import WeakKeyDictionary
 
+import numpy as np
+
 from ptp_symbolic.numeric.diagnose import fitted_model
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.confirm import is_moved_by_inputs
@@ -27,6 +29,7 @@ from ptp_symbolic.numeric.diagnose.gain import Gain, gain
 from ptp_symbolic.numeric.diagnose.noise_floor import (
     leaves_noise_alone,
     noise_floor_of,
+    normalised_residual,
     propagated_input_noise,
 )
 from ptp_symbolic.numeric.diagnose.proposals import ProposedSets, propose
@@ -40,7 +43,7 @@ from ptp_symbolic.numeric.diagnose.refits import (
 )
 from ptp_symbolic.numeric.diagnose.stepwise import Search, Tried, is_earned
 from ptp_symbolic.numeric.diagnose.summary import ranking_row
-from ptp_symbolic.numeric.identify.constants import SCREENED
+from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, SCREENED
 from ptp_symbolic.numeric.identify.evidence import Allowance
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.numeric.identify.run import Run
@@ -55,8 +58,8 @@ _ON_OTHER_RUNS: WeakKeyDictionary[FittedModel, dict[tuple[Any, ...], FittedModel
 class FittedStructure:
     """A structure fitted to the training runs, no term added; `added` are its effects with the
     parameters that they brought (none for the declared structure), `provides` its mechanisms, and
-    `proposals` what leads further. At first it is fitted to whole runs (windows, where they are) by
-    a few iterations from the best of its starts.
+    `proposals` what leads further. At first it `is_begun`: fitted to whole runs (windows, where
+    they are) by a few iterations from the best of its starts.
     """
 
     added: tuple[Candidate, ...]
@@ -64,6 +67,7 @@ class FittedStructure:
     problem: SearchProblem
     trial: FittedModel
     proposals: ProposedSets
+    is_begun: bool = False
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -87,12 +91,14 @@ class FittedStructure:
     def further(self) -> "FittedStructure":
         """The structure fitted a few iterations further."""
         left = halving(self.problem, [self.trial], 1)
-        return self._with(self.problem, (left or [self.trial])[0])
+        return replace(self._with(self.problem, (left or [self.trial])[0]), is_begun=True)
 
     def finished(self) -> "FittedStructure":
         """The structure fitted to the end of whole runs; windows are for `over_windows_too`."""
         problem = self.problem
-        return self._with(*over_whole_runs(problem, self.proposals)) if problem.windows else self
+        if not problem.windows:
+            return replace(self, is_begun=False)
+        return self._with(*over_whole_runs(problem, self.proposals))
 
     def over_windows_too(self) -> "FittedStructure":
         """The structure led over windows, where whole runs leave more than noise."""
@@ -125,7 +131,7 @@ class FittedStructure:
         if _alike(trial, self.trial):
             trial = ranked([trial, self.trial])[0]
         proposals = replace(self.proposals, start=trial.values)
-        return replace(self, problem=problem, trial=trial, proposals=proposals)
+        return replace(self, problem=problem, trial=trial, proposals=proposals, is_begun=False)
 
 
 def _alike(one: FittedModel, other: FittedModel) -> bool:
@@ -137,19 +143,19 @@ def begin_structure(
     provides: frozenset[str],
     problem: SearchProblem,
     starts: Sequence[Mapping[str, float]],
-    known: Mapping[str, float],
+    known: Sequence[Mapping[str, float]],
     notes: Sequence[str] = (),
 ) -> FittedStructure:
     """The structure of `problem`, begun from `starts` (of the parameters that the effects named in
-    `keys` bring), each beside the declared start and beside `known` values of a fit of the declared
-    structure. `notes` say of added effects what was moved with them.
+    `keys` bring), each beside the platform's start and beside `known` values of the others. `notes`
+    say of added effects what was moved with them.
     """
     proposals = propose(problem)
     own = {f.name: f for f in problem.free}
-    fitted_before = {n: inside(own[n], value) for n, value in known.items() if n in own}
+    others = [{n: inside(own[n], v) for n, v in values.items() if n in own} for values in known]
     every = [
         {**proposals.start, **beside, **start}
-        for beside in ({}, fitted_before)
+        for beside in ({}, *others)
         for start in ({}, *starts)
     ]
     distinct = {tuple(sorted(values.items())): values for values in every}
@@ -164,7 +170,7 @@ def begin_structure(
         replace(effect, title=f"{effect.title}, {note}") if note else effect
         for effect, note in zip(effects, (*notes, *[""] * len(effects)), strict=False)
     )
-    return FittedStructure(added, provides, problem, trial, proposals)
+    return FittedStructure(added, provides, problem, trial, proposals, is_begun=True)
 
 
 def effects_of(problem: SearchProblem, keys: Sequence[str]) -> tuple[Candidate, ...]:
@@ -184,20 +190,26 @@ def effects_of(problem: SearchProblem, keys: Sequence[str]) -> tuple[Candidate, 
     )
 
 
-def on_runs_of(problem: SearchProblem, trial: FittedModel, pattern: Sequence[Run]) -> FittedModel:
-    """The trial fitted to the windows and samples of other runs of the same logs; kept as long as
-    the trial is, for one is compared with many.
+def on_runs_of(
+    problem: SearchProblem, trial: FittedModel, pattern: Sequence[Run], is_begun: bool = False
+) -> FittedModel:
+    """The trial fitted to the windows and samples of other runs of the same logs, by a few
+    iterations for one that `is_begun`; kept as long as the trial is, for one is compared with many.
     """
     own, other = (
         [(r.source, r.time[0], len(r.time)) for r in each] for each in (trial.fit.runs, pattern)
     )
     if own == other:
         return trial
-    kept, windows = _ON_OTHER_RUNS.setdefault(trial, {}), (problem, *other)
+    kept, windows = _ON_OTHER_RUNS.setdefault(trial, {}), (problem, is_begun, *other)
     if windows not in kept:
         runs = parted_like(problem.model, problem.whole, pattern)
         part = replace(problem, every_sample=runs, train=runs, windows=())
-        kept[windows] = refitted_in(part, trial)
+        if is_begun:
+            begun = fitted(part, trial.candidates, trial.values, None)
+            kept[windows] = (halving(part, [begun], 1) or [begun])[0]
+        else:
+            kept[windows] = refitted_in(part, trial)
     return kept[windows]
 
 
@@ -249,8 +261,9 @@ def _size(structure: FittedStructure) -> int:
 
 def deviance(structure: FittedStructure, declared: FittedStructure) -> float:
     """How badly a structure fits, in the windows of the declared one."""
-    pattern = declared.trial.fit.runs
-    return deviances([declared.trial, on_runs_of(structure.problem, structure.trial, pattern)])[1]
+    pattern, is_begun = declared.trial.fit.runs, declared.is_begun
+    there = on_runs_of(structure.problem, structure.trial, pattern, is_begun)
+    return deviances([declared.trial, there])[1]
 
 
 def is_near(one: FittedStructure, best: FittedStructure, declared: FittedStructure) -> bool:
@@ -266,7 +279,8 @@ def comes_near(
     """Whether a structure fits nearly as well as a `trial` of another problem; see `is_near`."""
     pattern = declared.trial.fit.runs
     own, other = (
-        on_runs_of(p, t, pattern) for p, t in ((one.problem, one.trial), (problem, trial))
+        on_runs_of(p, t, pattern, declared.is_begun)
+        for p, t in ((one.problem, one.trial), (problem, trial))
     )
     return fitted_model.is_near(own, [other])
 
@@ -296,6 +310,25 @@ def alternatives(
 
     beaten = side_by_side(is_beaten, others)
     return [s for s, worse in zip(others, beaten, strict=True) if not worse]
+
+
+def unaffected_axes(search: Search, is_noise_alone: bool) -> frozenset[str]:
+    """Axes of whose motion nothing is left to explain: the chosen set of a search for terms leaves
+    noise alone there, and none of its terms is on that axis, nor, where it `is_noise_alone` on all
+    axes, on the platform. A term may stand in for a structure, but not for one on another axis.
+    """
+    trial, most = search.chosen, ABOVE_NOISE * np.hypot(1.0, search.propagated.most)
+    is_quiet = dict(
+        zip(trial.fit.runs[0].signals, normalised_residual(trial.fit) <= most, strict=True)
+    )
+    found = {c.axis for c in trial.candidates}
+    if is_noise_alone and None in found:
+        return frozenset()
+    return frozenset(
+        axis
+        for axis in trial.fit.model.module.AXES
+        if axis not in found and all(q for s, q in is_quiet.items() if s.endswith(f"_{axis}"))
+    )
 
 
 def is_identifiable(effect: Candidate, trial: FittedModel) -> bool:

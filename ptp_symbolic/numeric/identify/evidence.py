@@ -123,6 +123,11 @@ class Allowance:
         """Whether nothing new may begin."""
         return self.work.samples - self.begun > self.samples or self.is_out_of_time
 
+    def pays_for(self, each: int) -> float:
+        """How often work of so many samples may begin; 0 once it is over."""
+        left = self.samples - (self.work.samples - self.begun)
+        return 0.0 if self.is_over else left / max(each, 1)
+
     def rest(self, least: float) -> "Allowance":
         """What remains of it now, but the share `least` of both limits at least."""
         done, now = self.work.samples, time.monotonic()
