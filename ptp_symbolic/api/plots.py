@@ -38,7 +38,7 @@ def panels_by_unit(
             for mark in marks:
                 axes.axvline(mark, color=BORDER, linewidth=0.5)
             axes.set_ylabel(unit)
-            axes.legend(loc="upper right", frameon=False)
+            axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=6, frameon=False)
         grid[-1].set_xlabel("time [s]")
     return figure
 

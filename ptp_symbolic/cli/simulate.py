@@ -61,6 +61,7 @@ OUT = click.option("--out", type=Path, required=True, help="Folder for the resul
 @EVERY
 @METHOD
 @STEP
+@click.option("--plot", is_flag=True, help="Write trajectory.png too: states and inputs.")
 @OUT
 def simulate(
     source: str,
@@ -70,6 +71,7 @@ def simulate(
     every: float,
     method: str | None,
     step: float | None,
+    plot: bool,
     out: Path,
 ) -> None:
     """Simulate a platform; writes trajectory.csv, which is a log too, and events.csv."""
@@ -101,6 +103,10 @@ def simulate(
         "trajectory.csv": table_text(list(columns), zip(*columns.values(), strict=True)),
         "events.csv": table_text(["time [s]", "element", "mode"], events),
     }
+    if plot:
+        from ptp_symbolic.api.plots import png_of
+
+        files["trajectory.png"] = png_of(found.plot())
     write_files_atomically(out, files)
     note_defaults(platform)
     if not inputs and model.input_names:

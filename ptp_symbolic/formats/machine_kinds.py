@@ -15,6 +15,7 @@ class Kind:
 MACHINES = {
     "pan-tilt": Kind("Pan-tilt platform with a payload", ("pan", "tilt")),
     "pan": Kind("One rotary axis", ("pan",)),
+    "tilt": Kind("One rotary axis with a payload that gravity acts on", ("tilt",)),
     "linear": Kind("One linear axis", ("pan",), True),
 }
 DRIVES = ("motor", "torque")

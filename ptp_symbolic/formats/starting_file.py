@@ -38,7 +38,7 @@ def starting_text(name: str, machine: str, drive: str) -> str:
 
 def _declared(kind: Kind, drive: str) -> Iterator[EffectDeclaration]:
     yield EffectDeclaration("rigid_bodies", None, None)
-    if len(kind.axes) > 1:
+    if "tilt" in kind.axes:
         yield EffectDeclaration("payload", None, None)
     for axis in kind.axes:
         if drive == "motor":

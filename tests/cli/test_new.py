@@ -15,7 +15,7 @@ from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.placement import undeclared_parameters
 
-WAYS = [(m, d) for m in ("pan-tilt", "pan", "linear") for d in ("motor", "torque")]
+WAYS = [(m, d) for m in ("pan-tilt", "pan", "tilt", "linear") for d in ("motor", "torque")]
 
 
 def run(*arguments: str) -> str:
@@ -38,7 +38,7 @@ def test_what_is_left_open_is_named_and_filled_in_it_is_a_machine(
 ) -> None:
     file = made(tmp_path, machine, drive)
     text = file.read_text("utf-8")
-    with pytest.raises(InputError, match=r"nan is no value; give that of \w+, .*F_c_pan"):
+    with pytest.raises(InputError, match=r"nan is no value; give that of \w+, .*F_c_(pan|tilt)"):
         declared_platform(str(file))
     filled = re.sub(r"(counts_per_\w+) = nan", r"\1 = 7200", text)
     filled = filled.replace("start = nan", "start = 0.5").replace("value = nan", "value = 1.5")

@@ -44,8 +44,9 @@ def columns(path: Path) -> dict[str, np.ndarray]:
 def test_a_trajectory_is_a_log_of_its_platform(call, tmp_path: Path) -> None:
     given = ("--input", "tau_pan=step:0.2@0.1", "--initial", "theta_tilt=0.3")
     first = tmp_path / "first"
-    done = call(*IDEAL, *given, "--duration", 0.5, "--every", 0.002, "--out", first)
+    done = call(*IDEAL, *given, "--duration", 0.5, "--every", 0.002, "--plot", "--out", first)
     assert (done.code, done.err) == (0, "")
+    assert (first / "trajectory.png").read_bytes().startswith(b"\x89PNG")
     found = columns(first / "trajectory.csv")
     assert len(found["time [s]"]) == 251
     assert found["theta_tilt [rad]"][0] == 0.3
