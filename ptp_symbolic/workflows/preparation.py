@@ -116,8 +116,10 @@ def problem_for(
     )
 
 
-def with_effects(platform: Platform, after: FittedModel) -> Platform:
-    """`platform` with the accepted effects, and every fitted value as the new start."""
+def with_effects(platform: Platform, after: FittedModel, *, moves: bool = True) -> Platform:
+    """`platform` with the accepted effects, and every fitted value as the new start; but that of
+    what was free before as it was unless it `moves`.
+    """
     bounds = {p.name: p for p in after.fit.model.parameters}
     have = {(e.effect, e.axis) for e in platform.effects}
     added = [
@@ -137,4 +139,6 @@ def with_effects(platform: Platform, after: FittedModel) -> Platform:
         for c in after.candidates
         for name in c.parameters
     ]
-    return variants.extended(platform, added, after.values, fitted)
+    before = {p.name for p in platform.parameters if p.free}
+    values = {n: v for n, v in after.values.items() if moves or n not in before}
+    return variants.extended(platform, added, values, fitted)

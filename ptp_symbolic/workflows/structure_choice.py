@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Any
 
 from ptp_symbolic.models import variants
-from ptp_symbolic.models.structures import Rebuilt, family, pairs, structures
+from ptp_symbolic.models.structures import Rebuilt, family, structures
 from ptp_symbolic.models.variants import candidate_effects
 from ptp_symbolic.numeric.diagnose.fitted_model import (
     FittedModel,
@@ -55,6 +55,8 @@ from ptp_symbolic.workflows.structure_fits import (
     fit_structures,
     in_scale,
     leading_platform,
+    on_axes_of,
+    pairs_with,
 )
 
 FAR_BEHIND = "with terms beside it, the best leaves surely less than half of its squared error"
@@ -134,7 +136,6 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     windows, not in all; and where no answer is found soon, of the structure that fits best, and of
     the declared one where that is beaten by little.
     """
-    logs = replace(logs, declared={p.name: p.value for p in platform.parameters if p.free})
     every, untried = structures(platform)
     untried |= variants.that_cannot_stand(platform)
     every = in_scale(every, platform)
@@ -158,22 +159,23 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     idle = unaffected_axes(terms.found, terms.is_noise_alone)
     untried |= {key: IDLE for r in every if r.axes <= idle for key in r.keys}
     every = tuple(r for r in every if not r.axes <= idle)
-    known = terms.found.chosen.values if terms.is_noise_alone else None
+    found = terms.found.chosen.values
     beside = None if terms.is_noise_alone else _with_found(platform, terms)
     there = _with_found(platform, terms) if terms.is_noise_alone and _late(terms) else None
     before = logs.allowance.work.samples
     if there is not None:
-        beside_late = _on_axes_of(every, in_scale(structures(there)[0], platform))
-        fitted = fit_structures(there, beside_late, logs)
+        beside_late = on_axes_of(every, in_scale(structures(there)[0], platform))
+        fitted = fit_structures(there, beside_late, logs, found)
     else:
+        known = found if terms.is_noise_alone else None
         fitted = fit_structures(platform, every, logs, known, terms.found if beside else None)
     is_paid = logs.allowance.pays_for(logs.allowance.work.samples - before) >= 1.0
     if not terms.is_noise_alone and not fitted.quiet and is_paid:
-        again = _fitted_beside(platform, beside, fitted, logs) if beside else None
+        again = _fitted_beside(platform, beside, fitted, logs, found) if beside else None
         again = again or _led(platform, every, fitted, logs)
         fitted = again or fitted.over_windows_too(logs)
         if not fitted.quiet and fitted.order and not logs.allowance.is_over:
-            fitted, paired = _paired(fitted, every, logs)
+            fitted, paired = _paired(platform, fitted, every, logs)
             platforms |= _platforms(paired)
     followed = fitted.quiet or ([] if terms.is_noise_alone else fitted.followed)
     outcomes = [searched(s) for s in followed]
@@ -205,16 +207,11 @@ def _platforms(every: Sequence[Rebuilt]) -> dict[tuple[tuple[str, ...], frozense
     return {(rebuilt.keys, rebuilt.provides): rebuilt.platform for rebuilt in every}
 
 
-def _on_axes_of(every: Sequence[Rebuilt], others: Sequence[Rebuilt]) -> tuple[Rebuilt, ...]:
-    """Those of other structures that are on axes of `every`."""
-    axes = {axis for rebuilt in every for axis in rebuilt.axes}
-    return tuple(rebuilt for rebuilt in others if rebuilt.axes <= axes)
-
-
 def _with_found(platform: Platform, one: Searched) -> Platform | None:
     """The platform with the effects that a search found and that can be there without its
     structure, where these surely halve the squared error; None where they do not. A delay is not
-    among them, for it makes up for the lag of a structure.
+    among them, for it makes up for the lag of a structure. What was declared free starts as it was:
+    viscous friction has gone from one side of a gear to the other where only their sum is known.
     """
     trial, own = one.found.chosen, {(e.effect, e.axis) for e in candidate_effects(platform)}
     late = _late(one)
@@ -228,7 +225,7 @@ def _with_found(platform: Platform, one: Searched) -> Platform | None:
     without = on_runs_of(one.found.problem, one.found.declared, trial.fit.runs)
     if not gain(trial, without).is_most:
         return None
-    return with_effects(platform, replace(trial, candidates=kept))
+    return with_effects(platform, replace(trial, candidates=kept), moves=False)
 
 
 def _late(one: Searched) -> set[str]:
@@ -239,16 +236,20 @@ def _late(one: Searched) -> set[str]:
 
 
 def _fitted_beside(
-    platform: Platform, beside: Platform, fitted: Fitted, logs: Logs
+    platform: Platform,
+    beside: Platform,
+    fitted: Fitted,
+    logs: Logs,
+    known: Mapping[str, float] | None = None,
 ) -> Fitted | None:
-    """The structures fitted again `beside` effects that were found; None where none predicts better
-    than these alone.
+    """The structures fitted again `beside` effects that were found with `known` values; None where
+    none predicts better than these alone.
     """
     own = {(s.keys, s.provides) for s in fitted.every}
     better = {(s.keys, s.provides) for s in (fitted.every[k] for k in fitted.better)}
     every = in_scale(structures(beside)[0], platform)
     kept = [r for r in every if (r.keys, r.provides) in (better if r.of else own)]
-    found = fit_structures(beside, kept, logs)
+    found = fit_structures(beside, kept, logs, known)
     found = found if found.quiet else found.over_windows_too(logs)
     return replace(found, failed={**fitted.failed, **found.failed}) if found.order else None
 
@@ -277,10 +278,12 @@ def _followed_on(
     """
     if not outcomes or any(s.is_noise_alone for s in outcomes) or logs.allowance.is_over:
         return fitted, outcomes
-    beside = _with_found(platform, _best_fit(outcomes))
+    best = _best_fit(outcomes)
+    beside = _with_found(platform, best)
     known = {effect.key for effect in fitted.declared.problem.model.effects}
-    is_new = beside is not None and not known.issuperset(effect_keys(beside))
-    found = _fitted_beside(platform, beside, fitted, logs) if beside and is_new else None
+    found = None
+    if beside is not None and not known.issuperset(effect_keys(beside)):
+        found = _fitted_beside(platform, beside, fitted, logs, best.found.chosen.values)
     there = {(s.keys, s.provides): s for s in found.every} if found else {}
     own = [(s.structure.keys, s.structure.provides) for s in outcomes if s.structure]
     if found is None or not all(key in there for key in own):
@@ -293,7 +296,7 @@ def _followed_on(
 
 
 def _paired(
-    fitted: Fitted, every: Sequence[Rebuilt], logs: Logs
+    platform: Platform, fitted: Fitted, every: Sequence[Rebuilt], logs: Logs
 ) -> tuple[Fitted, Sequence[Rebuilt]]:
     """The fitted structures, and pairs of the best one, or the simplest that it contains, and each
     of those one step away from it, where one of these leaves noise alone: bristles show beside the
@@ -307,17 +310,16 @@ def _paired(
     best = min(contained, key=lambda s: len(s.provides), default=best)
     if is_near_noise_floor(best.trial) and not gain_over(best, fitted.declared).is_most:
         return fitted, ()
-    declared = next(r for r in every if (r.keys, r.provides) == (best.keys, best.provides))
-    there = variants.extended(declared.platform, (), best.trial.values, ())
-    beside = in_scale(_on_axes_of(every, pairs(replace(declared, platform=there))), there)
     logs.progress(f"fitting pairs with {' + '.join(best.keys)}")
+    beside, there = pairs_with(best, fitted.platform, every)
     found = fit_structures(there, beside, logs)
     if not found.quiet:
         found = found.over_windows_too(logs)
     if not found.quiet:
         return fitted, ()
     finished = tuple(found.every[k] for k in found.better)
-    return replace(fitted, every=(*fitted.every, *finished)), beside
+    own, _ = pairs_with(best, platform, every)
+    return replace(fitted, every=(*fitted.every, *finished)), own
 
 
 def _from_what_contains_it(
@@ -438,7 +440,7 @@ def _searched(
         logs.progress,
         logs.allowance.rest(LEAST_SHARE),
     )
-    starts = {p.name: p.value for p in platform.parameters} | dict(logs.declared)
+    starts = {p.name: p.value for p in platform.parameters}
     free = tuple(replace(f, declared_start=starts[f.name]) for f in problem.free)
     problem = replace(problem, free=free)
     return Searched(platform, structure, problem, search(problem, brief=brief))

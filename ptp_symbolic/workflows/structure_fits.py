@@ -2,16 +2,18 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.models import variants
 from ptp_symbolic.models.structures import (
     Family,
     Rebuilt,
     family,
+    pairs,
     structures,
     to_scale,
     with_what_leads,
@@ -40,24 +42,22 @@ FOLLOWED = 2  # structures that go on into the search for terms where none leave
 
 @dataclass(frozen=True, eq=False)
 class Logs:
-    """What every structure is fitted to and judged by, the allowance of the diagnosis, and the
-    starts that are `declared`.
-    """
+    """What every structure is fitted to and judged by, and the allowance of the diagnosis."""
 
     train: tuple[Log, ...]
     validate: tuple[Log, ...]
     executor: Executor
     progress: Progress
     allowance: Allowance
-    declared: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
-    """A platform as declared and all structures one step away from it, each fitted; which of these
-    are the `better` half, and by key why others could not be.
+    """A `platform`, as declared or with effects that were found, and all structures one step away
+    from it, each fitted; which of these are the `better` half, and by key why others could not be.
     """
 
+    platform: Platform
     declared: FittedStructure
     every: tuple[FittedStructure, ...]
     better: tuple[int, ...]
@@ -118,13 +118,11 @@ def fit_structures(
 
     They are started beside the parameters `known` from a fit that leaves noise alone, else beside
     those of the platform's: where a delay makes up for a lag, the former are right, the latter not.
-    And beside the declared starts where others are the platform's now: viscous friction on one side
-    of a gear has gone to the other where only their sum is known, and a shaft needs it.
     Until they are fitted to their end, they are compared in the runs of the platform begun.
     """
     usual = [rebuilt for rebuilt in every if not rebuilt.of]
     logs.progress(f"fitting {len(usual)} structures one step away")
-    at_first = _begun(platform, None, logs, {})
+    at_first = _begun(platform, None, logs, known or {})
     declared = at_first.finished()
     beside = declared.trial.values if known is None else known
 
@@ -146,7 +144,8 @@ def fit_structures(
     tried = {key for b in begun for key in b.keys}
     failed = {r.keys[0]: b for r, b in results if isinstance(b, str) and r.keys[0] not in tried}
     finished = _finished(begun, better, at_first, declared, rival)
-    return Fitted(declared, _from_those_that_contain(finished, better, declared), better, failed)
+    every_finished = _from_those_that_contain(finished, better, declared)
+    return Fitted(platform, declared, every_finished, better, failed)
 
 
 def in_scale(every: Sequence[Rebuilt], platform: Platform) -> tuple[Rebuilt, ...]:
@@ -161,6 +160,24 @@ def in_scale(every: Sequence[Rebuilt], platform: Platform) -> tuple[Rebuilt, ...
     for axis, own in zip(bodies, np.diag(mass), strict=False):
         inertia[axis] += float(own)
     return tuple(to_scale(rebuilt, inertia) for rebuilt in every)
+
+
+def on_axes_of(every: Sequence[Rebuilt], others: Sequence[Rebuilt]) -> tuple[Rebuilt, ...]:
+    """Those of other structures that are on axes of `every`."""
+    axes = {axis for rebuilt in every for axis in rebuilt.axes}
+    return tuple(rebuilt for rebuilt in others if rebuilt.axes <= axes)
+
+
+def pairs_with(
+    best: FittedStructure, platform: Platform, every: Sequence[Rebuilt]
+) -> tuple[tuple[Rebuilt, ...], Platform]:
+    """The pairs of the best structure, and each of those one step away from a platform with it on
+    axes of `every`; and that platform, with the values that the best one was fitted with.
+    """
+    known = structures(platform)[0]
+    first = next(r for r in known if (r.keys, r.provides) == (best.keys, best.provides))
+    there = variants.extended(first.platform, (), best.trial.values, ())
+    return in_scale(on_axes_of(every, pairs(replace(first, platform=there))), there), there
 
 
 def leading_platform(
@@ -246,17 +263,16 @@ def _begun(
         logs.progress,
         logs.allowance,
     )
-    moved = any(f.start != logs.declared.get(f.name, f.start) for f in problem.free)
-    others = (known, logs.declared) if moved else (known,)
     if rebuilt is None:
-        return begin_structure((), frozenset(), problem, (), others)
+        return begin_structure((), frozenset(), problem, (), known)
     keys, provides, starts = rebuilt.keys, rebuilt.provides, rebuilt.starts
-    return begin_structure(keys, provides, problem, starts, others, rebuilt.notes)
+    return begin_structure(keys, provides, problem, starts, known, rebuilt.notes)
 
 
 def _better_half(begun: Sequence[FittedStructure], at_first: FittedStructure) -> tuple[int, ...]:
     """Which structures fit better than half of them, in the runs `at_first`, at least as many as
-    are followed; a side of friction or encoder that is far behind another is left out.
+    are followed; a side of friction or encoder that is far behind another is left out. Others that
+    contain one of these are among them: at their end they fit as well at least.
     """
     cost = [deviance(b, at_first) for b in begun]
     ahead: dict[Family, FittedStructure] = {}
@@ -266,7 +282,10 @@ def _better_half(begun: Sequence[FittedStructure], at_first: FittedStructure) ->
         first = ahead.setdefault(family(one.keys, one.provides), one)
         if is_near(one, first, at_first):
             left.append(k)
-    return tuple(left[: max(FOLLOWED, (len(left) + 1) // 2)])
+    half = max(FOLLOWED, (len(left) + 1) // 2)
+    parts = [begun[k].provides for k in left[:half]]
+    others = (k for k in left[half:] if any(part < begun[k].provides for part in parts))
+    return (*left[:half], *others)
 
 
 def _from_those_that_contain(

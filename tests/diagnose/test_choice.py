@@ -17,7 +17,7 @@ def with_terms(*keys: str, is_brief: bool = False) -> Any:
     """What a search ends with: terms, each with a parameter of its name."""
     terms = tuple(SimpleNamespace(key=key, parameters=(f"p_{key}",)) for key in keys)
     model = SimpleNamespace(parameter_names=("p_spring", "p_delay"), input_delays=(-1, 1))
-    chosen = SimpleNamespace(candidates=terms, fit=SimpleNamespace(model=model))
+    chosen = SimpleNamespace(candidates=terms, fit=SimpleNamespace(model=model), values={})
     return SimpleNamespace(is_brief=is_brief, is_cut_short=False, chosen=chosen)
 
 

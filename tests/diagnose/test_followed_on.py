@@ -52,13 +52,13 @@ class Scene:
     searched: list[tuple[str, ...]] = field(default_factory=list)
 
     def outcome(self, structure: Structure) -> Searched:
-        found = SimpleNamespace(declared=None)
+        found = SimpleNamespace(declared=None, chosen=SimpleNamespace(values={}))
         one = Searched(cast(Any, None), cast(Any, structure), cast(Any, None), cast(Any, found))
         one.__dict__["is_noise_alone"] = self.noise_alone
         return one
 
     def run(self, fits: Fits, followed: list[Structure], after: Fits) -> tuple[Any, list[Searched]]:
-        def again(platform: Any, beside: str, fitted: Any, logs: Any) -> Fits:
+        def again(platform: Any, beside: str, *given: Any) -> Fits:
             self.fitted_beside.append(beside)
             return after
 
@@ -170,7 +170,7 @@ def test_what_needs_the_structure_is_no_effect_of_the_platform_without_it(
     patch = monkeypatch.setattr
     patch(structure_choice, "on_runs_of", lambda *given: None)
     patch(structure_choice, "gain", lambda *given: SimpleNamespace(is_most=True))
-    patch(structure_choice, "with_effects", lambda platform, trial: trial.candidates)
+    patch(structure_choice, "with_effects", lambda platform, trial, moves: trial.candidates)
     assert structure_choice._with_found(rigid, found(gap, drag, late)) == (drag,)
     assert structure_choice._with_found(rigid, found(gap, late)) is None
 

@@ -92,25 +92,6 @@ def test_as_many_as_the_allowance_pays_for(monkeypatch: pytest.MonkeyPatch) -> N
     assert found == [(0, 0), (0, 1), (0, 0), (0, 0)]
 
 
-def test_a_structure_begins_beside_declared_starts_that_were_moved(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    def begun(keys: Any, provides: Any, problem: Any, starts: Any, known: Any) -> Any:
-        return known
-
-    start = SimpleNamespace(name="b_pan", start=2e-5)
-    monkeypatch.setattr(structure_fits, "model_of", lambda platform: None)
-    monkeypatch.setattr(
-        structure_fits, "problem_for", lambda *arguments: SimpleNamespace(free=[start])
-    )
-    monkeypatch.setattr(structure_fits, "begin_structure", begun)
-    there: Any = structure_fits.Logs((), (), *cast(Any, [None] * 3))
-    for declared, others in (({"b_pan": 2.0}, [{"b_pan": 2.0}]), ({"b_pan": 2e-5}, []), ({}, [])):
-        logs = replace(there, declared=declared)
-        known = structure_fits._begun(cast(Any, None), None, logs, {"F_v_pan": 6.0})
-        assert list(cast(Any, known)) == [{"F_v_pan": 6.0}, *others]
-
-
 def test_without_any(monkeypatch: pytest.MonkeyPatch) -> None:
     assert finished([2.0], (), monkeypatch) == [(0, 0)]
 
@@ -133,8 +114,12 @@ def test_of_friction_on_either_side_the_side_that_is_far_behind_is_left(
     ]
     found = structure_fits._better_half(cast(Any, every), cast(Any, every[0]))
     assert found == (1, 2), "two of the four that are left; the shaft before friction is none"
-    found = structure_fits._better_half(cast(Any, [*every, Begun(1.0)]), cast(Any, every[0]))
+    stop = Begun(1.0, keys=("stop@pan",), provides=frozenset({"end stop"}))
+    found = structure_fits._better_half(cast(Any, [*every, stop]), cast(Any, every[0]))
     assert found == (5, 1, 2)
+    both = Begun(30.0, keys=("gap@pan", "shaft@pan"), provides=behind | {"gap"})
+    found = structure_fits._better_half(cast(Any, [*every, both]), cast(Any, every[0]))
+    assert found == (1, 2, 3, 5), "with a gap it fits as well as without, at its end"
 
 
 SHAFT, HARMONIC, GAP, LAG = (
@@ -153,7 +138,7 @@ def followed(order: list[Begun], monkeypatch: pytest.MonkeyPatch) -> list[Begun]
     monkeypatch.setattr(
         structure_fits, "is_better", lambda one, other: one.error < 0.9 * other.error
     )
-    fitted = structure_fits.Fitted(cast(Any, None), (), (), {})
+    fitted = structure_fits.Fitted(*cast(Any, [None] * 2), (), (), {})
     fitted.__dict__["order"] = order
     return cast(Any, fitted.followed)
 

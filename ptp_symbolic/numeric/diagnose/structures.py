@@ -32,7 +32,7 @@ from ptp_symbolic.numeric.diagnose.noise_floor import (
     normalised_residual,
     propagated_input_noise,
 )
-from ptp_symbolic.numeric.diagnose.proposals import ProposedSets, propose
+from ptp_symbolic.numeric.diagnose.proposals import ProposedSets, declared_start, propose
 from ptp_symbolic.numeric.diagnose.refits import (
     fitted_over_windows,
     inside,
@@ -143,19 +143,21 @@ def begin_structure(
     provides: frozenset[str],
     problem: SearchProblem,
     starts: Sequence[Mapping[str, float]],
-    known: Sequence[Mapping[str, float]],
+    known: Mapping[str, float],
     notes: Sequence[str] = (),
 ) -> FittedStructure:
     """The structure of `problem`, begun from `starts` (of the parameters that the effects named in
-    `keys` bring), each beside the platform's start and beside `known` values of the others. `notes`
-    say of added effects what was moved with them.
+    `keys` bring), each beside the start of the rows, beside that of the platform, and beside
+    `known` values of a fit without it. `notes` say of added effects what was moved with them.
+
+    Rows and fits without a shaft tell only the sum of the viscous friction on its two sides.
     """
     proposals = propose(problem)
     own = {f.name: f for f in problem.free}
-    others = [{n: inside(own[n], v) for n, v in values.items() if n in own} for values in known]
+    fitted_before = {n: inside(own[n], value) for n, value in known.items() if n in own}
     every = [
         {**proposals.start, **beside, **start}
-        for beside in ({}, *others)
+        for beside in ({}, declared_start(problem), fitted_before)
         for start in ({}, *starts)
     ]
     distinct = {tuple(sorted(values.items())): values for values in every}
