@@ -61,6 +61,7 @@ from ptp_symbolic.workflows.structure_fits import (
 
 FAR_BEHIND = "with terms beside it, the best leaves surely less than half of its squared error"
 IDLE = "not tried: nothing is left to explain on this axis"
+SHARE = 0.5  # of the allowance, for fits of structures: what terms beside them take is left
 LEAST_SHARE = 0.1  # of the allowance, for a search beside a structure that fits well
 
 
@@ -125,12 +126,11 @@ class Choice:
 def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     """Search for terms of the declared platform, and where that adds any or leaves more than noise
     fit every structure one step away from it; search for terms in the best of them too, and choose.
-    Once their allowance is over nothing new is begun, and no further fits of structures where it
-    does not pay for as much as the first took; those that fit best are searched all the same.
+    Once the allowance is over nothing new is begun, and no further fits of structures where their
+    share does not pay for as much as the first took; the best are searched all the same.
 
     Where terms leave noise alone and a delay is among them, structures are fitted beside the
-    others: a lag may be what it was named for. None are on an axis of which nothing is left to
-    explain.
+    others: a lag may be what it was named for. An axis with nothing left to explain has none.
 
     All searches are brief at first. The whole one follows where that leaves noise alone in most
     windows, not in all; and where no answer is found soon, of the structure that fits best, and of
@@ -163,19 +163,20 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     beside = None if terms.is_noise_alone else _with_found(platform, terms)
     there = _with_found(platform, terms) if terms.is_noise_alone and _late(terms) else None
     before = logs.allowance.work.samples
+    shared = replace(logs, allowance=logs.allowance.part(SHARE))
     if there is not None:
         beside_late = on_axes_of(every, in_scale(structures(there)[0], platform))
-        fitted = fit_structures(there, beside_late, logs, found)
+        fitted = fit_structures(there, beside_late, shared, found)
     else:
         known = found if terms.is_noise_alone else None
-        fitted = fit_structures(platform, every, logs, known, terms.found if beside else None)
-    is_paid = logs.allowance.pays_for(logs.allowance.work.samples - before) >= 1.0
+        fitted = fit_structures(platform, every, shared, known, terms.found if beside else None)
+    is_paid = shared.allowance.pays_for(logs.allowance.work.samples - before) >= 1.0
     if not terms.is_noise_alone and not fitted.quiet and is_paid:
-        again = _fitted_beside(platform, beside, fitted, logs, found) if beside else None
-        again = again or _led(platform, every, fitted, logs)
-        fitted = again or fitted.over_windows_too(logs)
-        if not fitted.quiet and fitted.order and not logs.allowance.is_over:
-            fitted, paired = _paired(platform, fitted, every, logs)
+        again = _fitted_beside(platform, beside, fitted, shared, found) if beside else None
+        again = again or _led(platform, every, fitted, shared)
+        fitted = again or fitted.over_windows_too(shared)
+        if not fitted.quiet and fitted.order and not shared.allowance.is_over:
+            fitted, paired = _paired(platform, fitted, every, shared)
             platforms |= _platforms(paired)
     followed = fitted.quiet or ([] if terms.is_noise_alone else fitted.followed)
     outcomes = [searched(s) for s in followed]
@@ -198,8 +199,8 @@ def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     rows = tuple(
         structure_row(s, fitted.declared, named, refused, alike, leading) for s in [*order, *rest]
     )
-    is_cut_short = is_late or any(s.found.is_cut_short for s in [terms, *outcomes])
-    return Choice(chosen, terms.decided, rows, {**untried, **fitted.failed}, is_cut_short)
+    is_late |= any(s.found.is_cut_short for s in [terms, *outcomes])
+    return Choice(chosen, terms.decided, rows, {**untried, **fitted.failed}, is_late)
 
 
 def _platforms(every: Sequence[Rebuilt]) -> dict[tuple[tuple[str, ...], frozenset[str]], Platform]:
@@ -346,7 +347,7 @@ def _at_length(
     best = _best_fit([terms, *outcomes])
     if best is not terms and not best.is_noise_alone:
         as_good = [s for s in outcomes if _contains(best, s) and not _is_far_ahead(best, s)]
-        found = min(as_good, key=_size_of, default=best)
+        found = min(as_good, key=lambda s: _size(s.structure), default=best)
         whole = _continued(found, logs)
         outcomes = [whole if s is found else s for s in outcomes]
         best = _best_fit([best, whole]) if found is not best else whole
@@ -374,9 +375,8 @@ def _contains(one: Searched, other: Searched) -> bool:
     return other.structure.provides < one.structure.provides
 
 
-def _size_of(one: Searched) -> int:
-    assert one.structure is not None
-    return len(one.structure.provides)
+def _size(structure: FittedStructure | None) -> int:
+    return len(structure.provides) if structure else 0
 
 
 def _best_fit(searches: Sequence[Searched]) -> Searched:

@@ -128,6 +128,10 @@ class Allowance:
         left = self.samples - (self.work.samples - self.begun)
         return 0.0 if self.is_over else left / max(each, 1)
 
+    def part(self, share: float) -> "Allowance":
+        """The first `share` of its samples, until its time is over."""
+        return replace(self, samples=share * self.samples)
+
     def rest(self, least: float) -> "Allowance":
         """What remains of it now, but the share `least` of both limits at least."""
         done, now = self.work.samples, time.monotonic()
