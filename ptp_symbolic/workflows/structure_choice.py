@@ -36,6 +36,7 @@ from ptp_symbolic.numeric.diagnose.structures import (
     named_effects,
     on_runs_of,
     structure_row,
+    terms_beside,
     unaffected_axes,
     why_rejected,
 )
@@ -347,7 +348,9 @@ def _at_length(
     best = _best_fit([terms, *outcomes])
     if best is not terms and not best.is_noise_alone:
         as_good = [s for s in outcomes if _contains(best, s) and not _is_far_ahead(best, s)]
-        found = min(as_good, key=lambda s: _size(s.structure), default=best)
+        found = min(
+            as_good or [best], key=lambda s: len(s.structure.provides) if s.structure else 0
+        )
         whole = _continued(found, logs)
         outcomes = [whole if s is found else s for s in outcomes]
         best = _best_fit([best, whole]) if found is not best else whole
@@ -373,10 +376,6 @@ def _contains(one: Searched, other: Searched) -> bool:
     """Whether the structure of the first is that of the second, and more."""
     assert one.structure is not None and other.structure is not None
     return other.structure.provides < one.structure.provides
-
-
-def _size(structure: FittedStructure | None) -> int:
-    return len(structure.provides) if structure else 0
 
 
 def _best_fit(searches: Sequence[Searched]) -> Searched:
@@ -443,7 +442,8 @@ def _searched(
     starts = {p.name: p.value for p in platform.parameters}
     free = tuple(replace(f, declared_start=starts[f.name]) for f in problem.free)
     problem = replace(problem, free=free)
-    return Searched(platform, structure, problem, search(problem, brief=brief))
+    found = search(problem, brief=brief, known=terms_beside(structure, problem))
+    return Searched(platform, structure, problem, found)
 
 
 def _chosen(

@@ -304,13 +304,19 @@ def by_effects_alone(
     return other, fewer
 
 
-def search(problem: SearchProblem, *, brief: bool = False) -> Search:
+def search(
+    problem: SearchProblem, *, brief: bool = False, known: ProposedSet | None = None
+) -> Search:
     """Find the set of candidates that the training runs support; once its allowance is over, with
     what has been tried by then. A `brief` search ends with what is found soon: enough to see
-    whether any set fits as well as a model whose residual is noise alone.
+    whether any set fits as well as a model whose residual is noise alone. A set that is `known` to
+    fit is tried beside those of the rows.
     """
     problem.progress("comparing all sets of effects along the measured motion")
     proposals = propose(problem)
+    if known is not None:
+        sets = (known, *proposals.sets)
+        proposals = replace(proposals, sets=sets, is_any_preferred=True)
     problem = replace(problem, candidates=placed_by_rows(problem.candidates, proposals))
     problem = with_fewer_samples(problem, proposals.start)
     problem.progress("fitting the declared model")

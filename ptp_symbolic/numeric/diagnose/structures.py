@@ -32,7 +32,12 @@ from ptp_symbolic.numeric.diagnose.noise_floor import (
     normalised_residual,
     propagated_input_noise,
 )
-from ptp_symbolic.numeric.diagnose.proposals import ProposedSets, declared_start, propose
+from ptp_symbolic.numeric.diagnose.proposals import (
+    ProposedSet,
+    ProposedSets,
+    declared_start,
+    propose,
+)
 from ptp_symbolic.numeric.diagnose.refits import (
     fitted_over_windows,
     inside,
@@ -190,6 +195,24 @@ def effects_of(problem: SearchProblem, keys: Sequence[str]) -> tuple[Candidate, 
         )
         for effect in (own[key] for key in keys)
     )
+
+
+def terms_beside(structure: FittedStructure | None, problem: SearchProblem) -> ProposedSet | None:
+    """The terms that a structure was fitted beside, as candidates of the `problem` of a search in
+    it, with the values of that fit; None where there are none, as for the declared platform.
+    """
+    if structure is None:
+        return None
+    own = {f.name for f in structure.problem.free}
+    there: dict[str, Candidate] = {}
+    for effect in structure.problem.model.effects:
+        forms = [c for c in problem.candidates if c.key == effect.key and own.issuperset(c.names)]
+        whole = max(forms, key=lambda c: len(c.names), default=None)
+        if whole is not None and whole.locked is None:
+            there[effect.key] = whole
+    values = {n: v for n, v in structure.trial.values.items() if n in own}
+    found = ProposedSet(tuple(there.values()), {**declared_start(problem), **values})
+    return found if there else None
 
 
 def on_runs_of(
