@@ -10,6 +10,7 @@ import pytest
 
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows import structure_choice
+from ptp_symbolic.workflows.preparation import with_effects
 from ptp_symbolic.workflows.structure_choice import Searched
 
 LAG, SHAFT, GAP = "actuator_lag@pan", "shaft_compliance@pan", "backlash@pan"
@@ -173,6 +174,29 @@ def test_what_needs_the_structure_is_no_effect_of_the_platform_without_it(
     patch(structure_choice, "with_effects", lambda platform, trial, moves: trial.candidates)
     assert structure_choice._with_found(rigid, found(gap, drag, late)) == (drag,)
     assert structure_choice._with_found(rigid, found(gap, late)) is None
+
+
+@pytest.mark.parametrize(("moves", "friction"), [(True, 7.5), (False, 4.0)])
+def test_what_was_declared_free_starts_as_declared_beside_what_was_found(
+    moves: bool, friction: float
+) -> None:
+    declared = read_platform("thesis-pan-drive")
+    parameters = tuple(
+        replace(p, value=4.0, free=True) if p.name == "F_v_pan" else p for p in declared.parameters
+    )
+    platform = replace(declared, parameters=parameters)
+    drag = SimpleNamespace(
+        id="quadratic_drag", axis="pan", is_declared_value=False, parameters=("c_drag_pan",)
+    )
+    own = SimpleNamespace(name="c_drag_pan", unit="N m s^2/rad^2", lower=0.0, upper=10.0)
+    trial: Any = SimpleNamespace(
+        candidates=(drag,),
+        values={"F_v_pan": 7.5, "c_drag_pan": 0.3},
+        fit=SimpleNamespace(model=SimpleNamespace(parameters=[own])),
+    )
+    found = {p.name: p for p in with_effects(platform, trial, moves=moves).parameters}
+    assert (found["F_v_pan"].value, found["c_drag_pan"].value) == (friction, 0.3)
+    assert found["F_v_pan"].free and found["c_drag_pan"].free
 
 
 def end(error: float) -> Searched:

@@ -9,7 +9,12 @@ import pytest
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.fitted_model import FittedModel
-from ptp_symbolic.numeric.diagnose.structures import is_identifiable, is_there, unaffected_axes
+from ptp_symbolic.numeric.diagnose.structures import (
+    is_identifiable,
+    is_there,
+    terms_beside,
+    unaffected_axes,
+)
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.straight import finished
 
@@ -62,3 +67,32 @@ def test_an_axis_with_noise_and_no_term_has_no_structure(
     trial = FittedModel(found, replace(fit, runs=tuple(runs), model=model))
     search = SimpleNamespace(chosen=trial, propagated=SimpleNamespace(most=np.zeros(2)))
     assert unaffected_axes(cast(Any, search), pan == tilt == 1.0) == idle
+
+
+def test_a_search_in_a_structure_begins_with_the_terms_that_it_was_fitted_beside() -> None:
+    """Of the forms of a term, that with the parameters which were free; known values stay known."""
+    by_name = {
+        name: free_parameter(name, 0.0, -1.0, 1.0) for name in ("k", "a_F_c", "a_F_s", "a_v_s")
+    }
+
+    def form(key: str, *names: str) -> Candidate:
+        return Candidate(key, "pan", "", "", tuple(by_name[n] for n in names), {})
+
+    forms = [form("friction", *names) for names in (("a_F_c",), ("a_F_c", "a_F_s"), tuple(by_name))]
+    problem: Any = SimpleNamespace(
+        candidates=(*forms, form("drag", "a_F_s")), fixed={"R": 2.0, "a_F_c": 0.0}, free=()
+    )
+    effects = [SimpleNamespace(key=key) for key in ("shaft@pan", "friction@pan")]
+    structure: Any = SimpleNamespace(
+        problem=SimpleNamespace(
+            free=[by_name["k"], by_name["a_F_c"], by_name["a_F_s"]],
+            model=SimpleNamespace(effects=effects),
+        ),
+        trial=SimpleNamespace(values={"k": 0.5, "a_F_c": -0.27, "a_F_s": -0.2, "R": 1.98}),
+    )
+    found = terms_beside(structure, problem)
+    assert found is not None and found.candidates == (forms[1],)
+    assert found.values == {"k": 0.5, "a_F_c": -0.27, "a_F_s": -0.2, "R": 2.0}
+    structure.problem.model.effects = effects[:1]
+    assert terms_beside(structure, problem) is None
+    assert terms_beside(None, problem) is None

@@ -92,6 +92,16 @@ def test_as_many_as_the_allowance_pays_for(monkeypatch: pytest.MonkeyPatch) -> N
     assert found == [(0, 0), (0, 1), (0, 0), (0, 0)]
 
 
+def test_a_part_of_an_allowance_pays_for_its_share() -> None:
+    work = Work()
+    whole = Allowance(work, samples=400.0)
+    half = whole.part(0.5)
+    work.samples = 150
+    assert (whole.pays_for(100), half.pays_for(100), half.is_over) == (2.5, 0.5, False)
+    work.samples = 250
+    assert (whole.pays_for(100), half.pays_for(100), half.is_over) == (1.5, 0.0, True)
+
+
 def test_without_any(monkeypatch: pytest.MonkeyPatch) -> None:
     assert finished([2.0], (), monkeypatch) == [(0, 0)]
 
