@@ -116,15 +116,18 @@ def fit_structures(
     motor only in those that are in the better half with it at the joint. Where the best of them
     does not come near what a `rival` search found, only that best one is fitted to its end.
 
-    They are started beside the parameters `known` from a fit that leaves noise alone, else beside
-    those of the platform's: where a delay makes up for a lag, the former are right, the latter not.
+    They are started beside the parameters `known` from a fit with effects that were found, else
+    beside those of the platform's: where a delay makes up for a lag, the former are right, the
+    latter not. Beside the former they are started at the declared values too: fits without a shaft
+    tell only the sum of the viscous friction on its two sides.
     Until they are fitted to their end, they are compared in the runs of the platform begun.
     """
     usual = [rebuilt for rebuilt in every if not rebuilt.of]
     logs.progress(f"fitting {len(usual)} structures one step away")
-    at_first = _begun(platform, None, logs, known or {})
+    at_first = _begun(platform, None, logs, [] if known is None else [known])
     declared = at_first.finished()
-    beside = declared.trial.values if known is None else known
+    declared_starts = {p.name: p.value for p in platform.parameters if p.free}
+    beside = [declared.trial.values] if known is None else [declared_starts, known]
 
     def one(rebuilt: Rebuilt) -> FittedStructure | str:
         try:
@@ -201,7 +204,7 @@ def leading_platform(
 
     def one(pair: tuple[Platform, Rebuilt]) -> FittedStructure | None:
         try:
-            return _begun(pair[1].platform, pair[1], logs, fitted.declared.trial.values)
+            return _begun(pair[1].platform, pair[1], logs, [fitted.declared.trial.values])
         except InputError:
             return None
 
@@ -250,7 +253,7 @@ def _affordable(which: Sequence[int], begun: int, allowance: Allowance) -> list[
 
 
 def _begun(
-    platform: Platform, rebuilt: Rebuilt | None, logs: Logs, known: Mapping[str, float]
+    platform: Platform, rebuilt: Rebuilt | None, logs: Logs, known: Sequence[Mapping[str, float]]
 ) -> FittedStructure:
     model = model_of(platform)
     problem = problem_for(

@@ -119,7 +119,7 @@ def fitted(platform: Platform, folder: Path, key: str, executor: Executor) -> li
         if one.keys == (key,):
             model = model_of(one.platform)
             problem = problem_for(one.platform, model, logs, logs, (), executor, lambda text: None)
-            begun = begin_structure(one.keys, one.provides, problem, one.starts, {}, one.notes)
+            begun = begin_structure(one.keys, one.provides, problem, one.starts, (), one.notes)
             found.append(begun.finished())
     return found
 

@@ -121,7 +121,7 @@ def fits(declared: tuple[Platform, list[Path]]) -> dict[tuple[str, ...], FittedS
         ):
             model = model_of(there)
             problem = problem_for(there, model, logs, logs, (), executor, lambda text: None)
-            found[keys] = begin_structure(keys, provides, problem, starts, {}).finished()
+            found[keys] = begin_structure(keys, provides, problem, starts, ()).finished()
         yield found
 
 
@@ -211,7 +211,7 @@ def test_a_structure_goes_on_from_the_values_of_one_that_contains_it_and_keeps_w
     with workers() as executor:
         model = model_of(shaft.platform)
         problem = problem_for(shaft.platform, model, logs, logs, (), executor, lambda text: None)
-        begun = begin_structure(shaft.keys, shaft.provides, problem, (stiff,), {})
+        begun = begin_structure(shaft.keys, shaft.provides, problem, (stiff,), ())
         led = begun.from_values(true)
         kept = led.from_values(stiff)
         assert led.is_noise_alone

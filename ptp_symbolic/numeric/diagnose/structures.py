@@ -148,21 +148,19 @@ def begin_structure(
     provides: frozenset[str],
     problem: SearchProblem,
     starts: Sequence[Mapping[str, float]],
-    known: Mapping[str, float],
+    known: Sequence[Mapping[str, float]],
     notes: Sequence[str] = (),
 ) -> FittedStructure:
     """The structure of `problem`, begun from `starts` (of the parameters that the effects named in
-    `keys` bring), each beside the start of the rows, beside that of the platform, and beside
-    `known` values of a fit without it. `notes` say of added effects what was moved with them.
-
-    Rows and fits without a shaft tell only the sum of the viscous friction on its two sides.
+    `keys` bring), each beside the start of the rows, and beside each of the `known` values of other
+    parameters. `notes` say of added effects what was moved with them.
     """
     proposals = propose(problem)
     own = {f.name: f for f in problem.free}
-    fitted_before = {n: inside(own[n], value) for n, value in known.items() if n in own}
+    others = [{n: inside(own[n], v) for n, v in values.items() if n in own} for values in known]
     every = [
         {**proposals.start, **beside, **start}
-        for beside in ({}, declared_start(problem), fitted_before)
+        for beside in ({}, *others)
         for start in ({}, *starts)
     ]
     distinct = {tuple(sorted(values.items())): values for values in every}
