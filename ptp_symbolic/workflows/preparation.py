@@ -117,8 +117,8 @@ def problem_for(
 
 
 def with_effects(platform: Platform, after: FittedModel, *, moves: bool = True) -> Platform:
-    """`platform` with the accepted effects, and every fitted value as the new start; but that of
-    what was free before as it was unless it `moves`.
+    """`platform` with the accepted effects, and every fitted value as the new start. Without
+    `moves`, parameters that `platform` declares as free keep the starts that it declares.
     """
     bounds = {p.name: p for p in after.fit.model.parameters}
     have = {(e.effect, e.axis) for e in platform.effects}

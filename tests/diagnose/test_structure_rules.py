@@ -57,7 +57,7 @@ def test_an_axis_with_noise_and_no_term_has_no_structure(
     pan: float, tilt: float, terms: list[tuple[str, str | None]], idle: set[str]
 ) -> None:
     """A term on the platform moves both axes: it hides no structure where more than noise is left
-    on one of them, and may stand for one where none is.
+    on one of them, and may be confounded with one where noise alone is left.
     """
     rng = np.random.default_rng(5)
     fit = finished([np.array([pan, tilt]) * rng.standard_normal((400, 2)) for _ in range(3)])

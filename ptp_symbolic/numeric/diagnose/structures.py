@@ -336,9 +336,9 @@ def alternatives(
 
 
 def unaffected_axes(search: Search, is_noise_alone: bool) -> frozenset[str]:
-    """Axes of whose motion nothing is left to explain: the chosen set of a search for terms leaves
-    noise alone there, and none of its terms is on that axis, nor, where it `is_noise_alone` on all
-    axes, on the platform. A term may stand in for a structure, but not for one on another axis.
+    """Axes on which nothing is left to explain: there the chosen set of a search leaves noise alone
+    and has no term. A term on the whole platform counts for every axis where the set
+    `is_noise_alone`: it may be confounded with a structure on any.
     """
     trial, most = search.chosen, ABOVE_NOISE * np.hypot(1.0, search.propagated.most)
     is_quiet = dict(
