@@ -3,6 +3,7 @@
 import os
 import signal
 import socket
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -19,8 +20,9 @@ MESSAGE = "ptp-symbolic: interrupted; what was not finished has not been written
 def interruptible() -> Iterator[None]:
     """Let SIGINT end the process with `MESSAGE` and `EXIT_CODE`.
 
-    The main thread unwinds, so that temporary files go. While compiled code runs, or threads are
-    waited for, it cannot: a thread of its own, woken by the signal itself, then ends the process.
+    The main thread unwinds, so that temporary files go. While compiled code runs or calls back, or
+    threads are waited for, it cannot: a thread of its own, woken by the signal itself, then ends
+    the process.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -48,7 +50,15 @@ class _Interrupted(SystemExit):
 
 def _unwind(number: int, frame: FrameType | None) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    sys.unraisablehook = _stay
     raise _Interrupted(EXIT_CODE)
+
+
+def _stay(unraisable: "sys.UnraisableHookArgs") -> None:
+    """Go no further where compiled code called back, which drops exceptions; `_watch` ends it."""
+    if isinstance(unraisable.exc_value, _Interrupted):
+        threading.Event().wait()
+    sys.__unraisablehook__(unraisable)
 
 
 def _watch(heard: socket.socket, said: threading.Event) -> None:

@@ -14,10 +14,11 @@ from ptp_symbolic.cli.interruption import MESSAGE
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals are sent as POSIX does")
 # What makes a command wait until it is interrupted: in Python, in compiled code that no signal
-# reaches, in a thread that is waited for.
+# reaches, in what such code calls back, in a thread that is waited for.
 WAITS = {
     "python": "import time; time.sleep(60)",
     "compiled": "from numba import njit; f = njit(nogil=True)(SPIN); say(); f(1)",
+    "callback": "import ctypes, time; ctypes.CFUNCTYPE(None)(lambda: time.sleep(60))()",
     "threads": (
         "import time\n    from concurrent.futures import ThreadPoolExecutor\n"
         "    with ThreadPoolExecutor() as pool: pool.submit(time.sleep, 60).result()"
