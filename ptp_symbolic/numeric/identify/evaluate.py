@@ -29,19 +29,14 @@ from ptp_symbolic.numeric.identify.evidence import Deferred, refuse_unstored
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.runtime.element_layout import contact_guards
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.inputs import (
-    delay_columns,
-    delayed,
-    delays_of,
-    values_at,
-)
+from ptp_symbolic.numeric.simulation.inputs import delay_columns, delays_of
 from ptp_symbolic.numeric.simulation.integration import (
     MOST_STEPS,
     Accuracy,
     geared_weights,
     integrate,
 )
-from ptp_symbolic.numeric.simulation.kernels.calls import call, output_addresses
+from ptp_symbolic.numeric.simulation.kernels.calls import call
 from ptp_symbolic.numeric.simulation.kernels.records import (
     CUBE,
     DONE,
@@ -51,6 +46,7 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     MATRIX,
     VECTOR,
 )
+from ptp_symbolic.numeric.simulation.specialised import specialised
 
 FloatArray = NDArray[np.float64]
 
@@ -428,18 +424,20 @@ def evaluate(
     """
     refuse_unstored()
     may_chatter = bool(model.mode_names) and not model.sampler_periods
+    lean = specialised(model.module)
+    unneeded, is_asked = lean.unneeded(p, columns), len(columns) > 0
+    functions = lean.without(unneeded, tangents)
     columns = columns if tangents else columns[:0]
     x, s = start_state(model, run, p, z, columns)
-    late = delays_of(model, p)
-    is_late, table = bool(late.any()), delayed(run.inputs, late)
+    inputs = run.acting_inputs(delays_of(model, p))
     found = integrate(
         model,
         None,
         p,
         x,
-        table,
-        table.held,
-        table.with_stops(run.time) if is_late else run.stops,
+        inputs.table,
+        inputs.table.held,
+        inputs.stops,
         run.time,
         Accuracy(
             tolerance.relative,
@@ -453,8 +451,11 @@ def evaluate(
         columns,
         delay_columns(model, columns),
         rough_tangents=True,
+        functions=functions.motion,
     )
     run.work.add(max(len(run.time), found.steps), tangents)
+    if is_asked:  # what a fit simulates without derivatives needs no functions of its own
+        lean.note(unneeded, found.steps)
     r, j = np.zeros(run.size), np.zeros((run.size, found.s.shape[2]))
     failed = None
     if found.status != DONE:
@@ -462,12 +463,12 @@ def evaluate(
         failed = f"{run.name}: stopped at {found.reached:.4f} s{after}"
     if failed is None:
         _compare(
-            output_addresses(model.module),
+            functions.outputs,
             len(model.output_names),
             run.time,
             found.x,
             found.s,
-            values_at(table, run.time) if is_late else run.held_inputs,
+            inputs.values,
             p,
             np.ascontiguousarray(run.measured),
             columns,

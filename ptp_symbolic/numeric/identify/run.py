@@ -9,7 +9,7 @@ import itertools
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,9 +32,11 @@ from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.inputs import (
     InputSignal,
     InputTable,
+    delayed,
     sampled_signals,
     stack,
     table,
+    values_at,
 )
 
 FloatArray = NDArray[np.float64]
@@ -166,6 +168,16 @@ class StartUnknown:
     guess: float = 0.0
 
 
+class ActingInputs(NamedTuple):
+    """Inputs as a run takes them: their `table`, the times in s at which steps end, and the values
+    [k, nu] at its samples.
+    """
+
+    table: InputTable
+    stops: FloatArray
+    values: FloatArray
+
+
 @dataclass(frozen=True, eq=False)
 class Run:
     """One run or window: time [k] in s, inputs [k, nu], measured [k, ny], `weight` [ny] (1/sigma).
@@ -208,6 +220,20 @@ class Run:
     def stops(self) -> FloatArray:
         """Times [s] in s of the samples, and of the jumps of delayed inputs in between."""
         return self.inputs.with_stops(self.time)
+
+    def acting_inputs(self, delays: FloatArray) -> "ActingInputs":
+        """The inputs, each late by its own of `delays` [nu] in s; the last ones are kept, for a fit
+        seldom changes them.
+        """
+        if not delays.any():
+            return ActingInputs(self.inputs, self.stops, self.held_inputs)
+        key = delays.tobytes()
+        known: tuple[bytes, ActingInputs] | None = vars(self).get("_acting_inputs")
+        if known is None or known[0] != key:
+            table = delayed(self.inputs, delays)
+            late = ActingInputs(table, table.with_stops(self.time), values_at(table, self.time))
+            vars(self)["_acting_inputs"] = known = key, late
+        return known[1]
 
     @property
     def size(self) -> int:

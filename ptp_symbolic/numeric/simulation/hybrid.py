@@ -63,6 +63,7 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     source_stamp,
 )
 from ptp_symbolic.numeric.simulation.methods.exponential_step import (
+    LENGTHS,
     PROPAGATOR,
     Propagator,
     reach_sample,
@@ -282,7 +283,7 @@ def compiled_runner(sources: int, sampled: bool, lean: bool) -> Callable[..., in
             types.int64,  # address of the loop over held samples, or 0
             *RUN_TYPES,
             SAMPLING,
-            PROPAGATOR,
+            types.UniTuple(PROPAGATOR, LENGTHS),
         ),
         cache=True,
         **KERNEL,
@@ -309,7 +310,7 @@ def compiled_runner(sources: int, sampled: bool, lean: bool) -> Callable[..., in
         tangents,
         record,
         sampling,
-        propagator,
+        propagators,
     ):
         """Integrate from the first to the last stop; returns a status, the rest is in `record`."""
         record = place(Record(*record))
@@ -321,7 +322,12 @@ def compiled_runner(sources: int, sampled: bool, lean: bool) -> Callable[..., in
         step, watch = place(Step(*step)), place(Watch(*watch))
         moved = place(Tangents(*tangents))
         method, tangents = unless(left_out, method), unless(left_out, moved)
-        sampling, propagator = place(Sampling(*sampling)), place(Propagator(*propagator))
+        sampling = place(Sampling(*sampling))
+        propagators = (
+            place(Propagator(*propagators[0])),
+            place(Propagator(*propagators[1])),
+            place(Propagator(*propagators[2])),
+        )
         record.clock[TIME], record.clock[LENGTH] = stops[0], limits[1]
         if sampled and is_due(stops[0], sampling):
             sample_at(equations, inputs, stops[0], x, watch.m, tangents, sampling)
@@ -344,7 +350,7 @@ def compiled_runner(sources: int, sampled: bool, lean: bool) -> Callable[..., in
                     watch,
                     moved,
                     record,
-                    propagator,
+                    propagators,
                 )
                 if index == len(stops) - 1:
                     return DONE
@@ -371,7 +377,7 @@ def compiled_runner(sources: int, sampled: bool, lean: bool) -> Callable[..., in
                     tangents,
                     record,
                     sampling,
-                    propagator,
+                    propagators[0],
                 )
             else:
                 status = advance(

@@ -65,6 +65,20 @@ def evaluate_input_slopes(
         slope[j] = value
 
 
+@njit(cache=True, **KERNEL)
+def evaluate_inputs_at(times, table, cursor, u):
+    """Fill u [m, nu] with every signal at `times` [m] in s, as `evaluate_inputs` does."""
+    for i in range(len(times)):
+        evaluate_inputs(times[i], 1, *table, cursor, u[i])
+
+
+@njit(cache=True, **KERNEL)
+def evaluate_input_slopes_at(times, table, cursor, slopes):
+    """Fill slopes [m, nu] at `times` [m] in s, as `evaluate_input_slopes` does."""
+    for i in range(len(times)):
+        evaluate_input_slopes(times[i], 1, *table, cursor, slopes[i])
+
+
 @njit(forceinline=True, **KERNEL)
 def _find_piece(t, side, breaks, offsets, cursor, j):
     """Row of the coefficients of signal j at time t, and the time since that piece began."""

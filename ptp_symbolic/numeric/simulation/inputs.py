@@ -21,8 +21,8 @@ from numpy.typing import ArrayLike, NDArray
 from ptp_symbolic.errors import InputError, unknown, wrong_type
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.input_values import (
-    evaluate_input_slopes,
-    evaluate_inputs,
+    evaluate_input_slopes_at,
+    evaluate_inputs_at,
 )
 
 FloatArray = NDArray[np.float64]
@@ -363,16 +363,14 @@ def values_at(table: InputTable, times: FloatArray) -> FloatArray:
     one.
     """
     cursor, u = table.new_cursor(), np.zeros((len(times), len(table.offsets) - 1))
-    for row, time in zip(u, times, strict=True):
-        evaluate_inputs(time, 1, *table.arrays, cursor, row)
+    evaluate_inputs_at(np.ascontiguousarray(times), table.arrays, cursor, u)
     return u
 
 
 def slopes_at(table: InputTable, times: FloatArray) -> FloatArray:
     """Slopes [m, nu] per s of the signals of `table` at `times` [m] in s, as `values_at`."""
     cursor, slopes = table.new_cursor(), np.zeros((len(times), len(table.offsets) - 1))
-    for row, time in zip(slopes, times, strict=True):
-        evaluate_input_slopes(time, 1, *table.arrays, cursor, row)
+    evaluate_input_slopes_at(np.ascontiguousarray(times), table.arrays, cursor, slopes)
     return slopes
 
 

@@ -8,6 +8,7 @@ Integrate smooth motion by steps of order 8: preallocate, run, and return the re
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,7 @@ from ptp_symbolic.numeric.runtime.element_layout import contact_count, contact_g
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation import hybrid, smooth_runner
 from ptp_symbolic.numeric.simulation.events.impacts import STICKS
-from ptp_symbolic.numeric.simulation.inputs import InputTable
+from ptp_symbolic.numeric.simulation.inputs import InputTable, delays_of
 from ptp_symbolic.numeric.simulation.kernels.calls import addresses, smooth_addresses
 from ptp_symbolic.numeric.simulation.kernels.linear import padded
 from ptp_symbolic.numeric.simulation.kernels.records import (
@@ -31,7 +32,7 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     Tangents,
     Watch,
 )
-from ptp_symbolic.numeric.simulation.methods.exponential_step import new_propagator
+from ptp_symbolic.numeric.simulation.methods.exponential_step import LENGTHS, new_propagator
 from ptp_symbolic.numeric.simulation.methods.rosenbrock import STAGES
 from ptp_symbolic.numeric.simulation.methods.steps import ROSENBROCK, RUNGE_KUTTA
 from ptp_symbolic.numeric.simulation.sampling import loop_address, new_sampling
@@ -315,6 +316,7 @@ def integrate(
     ledger: bool = False,
     event_room: int = 0,
     rough_tangents: bool = False,
+    functions: IntArray | None = None,
 ) -> Solution:
     """Integrate `model` at p [np] from the first to the last of `stops` in s, from x [n] with
     tangents s [n, ns]; outputs at `times` [k] in s.
@@ -324,7 +326,8 @@ def integrate(
     `columns`; `delay_column` [nu] is per input the tangent of its delay, or -1. States that act on
     nothing (see `Model.acting`) stand still under the implicit method. `rough_tangents`: good to
     some thousandths is enough, so that exponential steps may carry them (see
-    `methods.exponential_tangents`).
+    `methods.exponential_tangents`). `functions` are those of `addresses`, where others than the
+    model's own are to be called.
 
     Without a `method` it is the one that suits the model, and the implicit one where the explicit
     one would be held up by stability; with one, the status is then STIFF. Raises InputError as
@@ -348,6 +351,7 @@ def integrate(
             ledger,
             event_room,
             rough_tangents,
+            functions,
         )
 
     chosen, most = method or default_method(model), accuracy.most_steps
@@ -396,6 +400,7 @@ def _integrate(
     ledger: bool,
     event_room: int,
     rough_tangents: bool,
+    functions: IntArray | None,
 ) -> Solution:
     """One run, as `integrate` has it."""
     stands_still = held or not any(model.module.INPUT_ACTS)
@@ -431,7 +436,7 @@ def _integrate(
         nu,
     )
     solved, c = n if s.shape[1] else model.moving, model.prepared(p)
-    functions = addresses(module, s.shape[1] > 0)
+    functions = addresses(module, s.shape[1] > 0) if functions is None else functions
     acting = model.acting(p, columns)
     if method == IMPLICIT:
         solved = min(solved, acting)
@@ -444,7 +449,8 @@ def _integrate(
     record = new_record(times, n, s.shape[1], len(times) if ledger else 0, event_room)
     sampled = len(model.sampler_periods) > 0
     whole = method == IMPLICIT and stands_still and not ledger and not sampled
-    whole = whole and (rough_tangents or not s.shape[1]) and not (tangents.delay_column >= 0).any()
+    whole = whole and (rough_tangents or not s.shape[1])
+    modes, moving = len(model.mode_names), solved if whole or sampled else 0
     lean_runner = method == IMPLICIT and not (s.shape[1] or sampled)
     status = hybrid.runner(sampled, lean_runner)(
         METHODS[method],
@@ -468,7 +474,7 @@ def _integrate(
         tuple(tangents),
         tuple(record),
         tuple(new_sampling(model, p, x, stops, padded(s.shape[1]))),
-        tuple(new_propagator(len(model.mode_names), solved if whole or sampled else 0, n)),
+        _propagators(model, p, modes, moving, n),
     )
     return Solution(
         status,
@@ -483,6 +489,17 @@ def _integrate(
         first_modes,
         watch.m,
     )
+
+
+def _propagators(
+    model: Model, p: FloatArray, modes: int, moving: int, n: int
+) -> tuple[tuple[Any, ...], ...]:
+    """Preallocated propagators [LENGTHS], as many different ones as lengths of steps follow one
+    another: one more than inputs are late at p [np], each by its own delay.
+    """
+    late = {delay for delay in delays_of(model, p).tolist() if delay > 0.0}
+    made = [tuple(new_propagator(modes, moving, n)) for _ in range(min(1 + len(late), LENGTHS))]
+    return tuple(made[k % len(made)] for k in range(LENGTHS))
 
 
 def refuse_start(model: Model, x: FloatArray, u: FloatArray, p: FloatArray, watch: Watch) -> None:

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.ahead import HELD_SAMPLES, made_once
+from ptp_symbolic.numeric.simulation.events.crossing import jump_by_delay
 from ptp_symbolic.numeric.simulation.events.impacts import derivative
 from ptp_symbolic.numeric.simulation.events.modes import fill_violations
 from ptp_symbolic.numeric.simulation.input_values import (
@@ -55,8 +56,10 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     source_stamp,
 )
 from ptp_symbolic.numeric.simulation.methods.exponential_step import (
+    LENGTHS,
     PROPAGATOR,
     Propagator,
+    of_length,
     reach_sample,
 )
 from ptp_symbolic.numeric.simulation.outputs import write_here
@@ -310,7 +313,7 @@ SIGNATURE = types.int64(
     placed(Watch, WATCH_TYPE),
     placed(Tangents, TANGENTS_TYPE),
     placed(Record, RECORD_TYPE),
-    placed(Propagator, PROPAGATOR),
+    types.UniTuple(placed(Propagator, PROPAGATOR), LENGTHS),
 )
 
 
@@ -330,13 +333,15 @@ def compiled_loop(sources: int) -> Callable[..., int]:
         watch,
         tangents,
         record,
-        propagator,
+        propagators,
     ):
         """Go on from the stop `index`; returns that of the stop where something else is needed."""
         record.counts[SOURCES] = sources
         while index < len(stops) - 1 and record.counts[STEPS] < limits[2]:
             t = stops[index]
+            copy(inputs.u, inputs.ahead)
             evaluate_inputs(t, 1, *inputs.table, inputs.cursor, inputs.u)
+            jump_by_delay(equations, inputs, t, x, inputs.ahead, watch, tangents)
             if fill_violations(equations, inputs, t, x, watch, watch.at_start) > 0.0:
                 break
             if not reach_sample(
@@ -350,7 +355,7 @@ def compiled_loop(sources: int) -> Callable[..., int]:
                 watch,
                 tangents,
                 record,
-                propagator,
+                propagators[of_length(stops[index + 1] - t, propagators)],
             ):
                 break
             index += 1

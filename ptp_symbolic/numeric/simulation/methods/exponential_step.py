@@ -169,13 +169,13 @@ PROPAGATOR = types.Tuple((_V, _V, *[_C] * 4, *[_M] * 11, *[_V] * 4, INTEGERS))
 class Propagator(NamedTuple):
     """Matrices that carry the moving states of a machine over one sampling period.
 
-    modes: those that the matrices hold for; clock [5]: the last period in s, whether matrices of it
-    are known, samples to wait before the next try, how many after the next failure, and by how much
-    in rad the fastest oscillation turns in the period. For every node s, by columns [moving, moving
-    rounded up to LANES]: decay = phi0(s h L), reach = s h phi1(s h L), weights of the rests, these
-    also `by_rows`; linear = L, phi0 to phi3 of h L [moving, moving]; shifted, psi, product [moving,
-    moving]: scratch. states, rest [3, w]: those at the nodes; fitted [3, 3], unit, order [3],
-    slope, change, none [w]: scratch; `none` stays zero.
+    modes: those that the matrices hold for; clock [6]: the period in s, whether matrices of it are
+    known, samples to wait before the next try, how many after the next failure, by how much in rad
+    the fastest oscillation turns in the period, and when in s it was last asked for. For every node
+    s, by columns [moving, moving rounded up to LANES]: decay = phi0(s h L), reach = s h phi1(s h
+    L), weights of the rests, these also `by_rows`; linear = L, phi0 to phi3 of h L [moving,
+    moving]; shifted, psi, product [moving, moving]: scratch. states, rest [3, w]: those at the
+    nodes; fitted [3, 3], unit, order [3], slope, change, none [w]: scratch; `none` stays zero.
     """
 
     modes: Any
@@ -205,7 +205,7 @@ class Propagator(NamedTuple):
 def new_propagator(modes: int, moving: int, n: int) -> Propagator:
     """Preallocated propagator of n states, the first `moving` of which are not set by samplers."""
     z, w = np.zeros, padded(n)
-    arrays = [z(modes), np.array([0.0, 0.0, 0.0, 1.0, 0.0])]
+    arrays = [z(modes), np.array([0.0, 0.0, 0.0, 1.0, 0.0, -np.inf])]
     arrays += [z((NODES, moving, padded(moving))) for _ in range(3)]
     arrays += [z((NODES, moving, moving))]
     arrays += [z((moving, moving)) for _ in range(8)]
@@ -325,10 +325,25 @@ def fill_rest(equations, inputs, t, x, m, s, step, tangents, propagator, out):
     add_sparse_product(step.fx, n, width, s, out)
 
 
-PERIOD, KNOWN, WAIT, PATIENCE, TURN = 0, 1, 2, 3, 4
+PERIOD, KNOWN, WAIT, PATIENCE, TURN, USED = 0, 1, 2, 3, 4, 5
+LENGTHS = 3  # of steps that follow one another: inputs of two axes, each late by its own delay
 LONGEST_WAIT = 64.0  # samples
 RESTING = 1e-3  # of the tolerance
 FARTHEST_TURN = math.pi  # rad in a step; of an oscillation that parabolas through the nodes show
+
+
+@inlined
+def of_length(length, propagators):
+    """Which of the `propagators` [LENGTHS] is that of steps of so many s; without one, the one that
+    no step has asked for for longest.
+    """
+    found = 0
+    for k in range(LENGTHS):
+        if abs(length - propagators[k].clock[PERIOD]) <= TIME_RESOLUTION:
+            return k
+        if propagators[k].clock[USED] < propagators[found].clock[USED]:
+            found = k
+    return found
 
 
 @merged
@@ -341,7 +356,7 @@ def reach_sample(
     t, clock = record.clock[TIME], propagator.clock
     length = target - t
     again = abs(length - clock[PERIOD]) <= TIME_RESOLUTION
-    clock[PERIOD] = length
+    clock[PERIOD], clock[USED] = length, t
     if not again:
         clock[KNOWN] = 0.0
         return False
