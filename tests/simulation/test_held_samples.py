@@ -4,6 +4,7 @@ The machine is the pan drive of the field logs, its voltage held from sample to 
 has a time constant of a millisecond, beside a sampling period of five.
 """
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from scipy.linalg import expm
 
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.inputs import stack, table
+from ptp_symbolic.numeric.simulation.inputs import delay_columns, delayed, stack, table
 from ptp_symbolic.numeric.simulation.integration import (
     Accuracy,
     Solution,
@@ -141,6 +142,60 @@ def test_tangents_that_must_be_good_are_not_taken_by_exponential_steps(drive: Mo
     for column in range(len(BY)):
         error = np.linalg.norm(found.s[:, 0, column] - exact.s[:, 0, column])
         assert error < 1e-5 * np.linalg.norm(exact.s[:, 0, column])
+
+
+DELAY = 2.3e-3  # s; within a sample
+
+
+def late_run(
+    late: Model, delay: float, tolerance: float, method: str, by: tuple[str, ...] = ()
+) -> Solution:
+    """The drive with its voltage late by `delay` in s, and rough tangents."""
+    n, shifted = len(late.state_names), delayed(stack([table(TIMES, VOLTAGE)]), np.array([delay]))
+    columns = np.array([late.parameter_names.index(name) for name in by], dtype=np.int64)
+    found = integrate(
+        late,
+        method,
+        late.parameter_vector({"t_delay_pan": delay}),
+        np.zeros(n),
+        shifted,
+        True,
+        shifted.with_stops(TIMES),
+        TIMES,
+        Accuracy(tolerance, 0.01 * tolerance * geared_weights(late), 1.0, 10**6),
+        np.zeros((n, len(by))) if by else None,
+        columns,
+        delay_columns(late, columns),
+        rough_tangents=True,
+    )
+    assert found.status == 0
+    return found
+
+
+@pytest.fixture(scope="module")
+def late() -> Model:
+    platform = read_platform(PLATFORM)
+    effects = (*platform.effects, EffectDeclaration("input_delay", "pan", None))
+    return emission.emit(replace(platform, effects=effects))
+
+
+def test_a_late_voltage_is_followed_by_steps_of_two_lengths(late: Model, figure) -> None:
+    """From a sample to where the voltage jumps, and from there to the next."""
+    exact = late_run(late, DELAY, 1e-10, "runge_kutta")
+    found = late_run(late, DELAY, 1e-6, "rosenbrock")
+    assert figure("error, rad", np.abs(found.x[:, 0] - exact.x[:, 0]).max()) < 1e-6
+    assert figure("steps per sample", found.steps / (len(TIMES) - 1)) < 3.5
+
+
+def test_tangents_by_a_delay_are_those_of_differences(late: Model, figure) -> None:
+    """Central differences of the explicit method; where the voltage jumps, the tangent does."""
+    step = 2e-5
+    after, before = (
+        late_run(late, DELAY + change, 1e-10, "runge_kutta").x[:, 0] for change in (step, -step)
+    )
+    truth = (after - before) / (2.0 * step)
+    found = late_run(late, DELAY, 1e-5, "rosenbrock", by=("J_pan", "t_delay_pan")).s[:, 0, 1]
+    assert figure("error", np.linalg.norm(found - truth) / np.linalg.norm(truth)) < 1e-2
 
 
 def test_a_linear_drive_moves_as_the_exponential_says(figure) -> None:
