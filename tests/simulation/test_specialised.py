@@ -29,7 +29,7 @@ def model(request: pytest.FixtureRequest) -> Model:
 
 
 def parameters(model: Model) -> tuple[np.ndarray, np.ndarray]:
-    """Candidates at zero but those WITH, and the columns of these and of two declared parameters."""
+    """Candidates at zero but those WITH; columns of these and of two declared parameters."""
     values = {q.name: q.vanishes for q in model.parameters if q.vanishes is not None}
     on = {q.name: 0.3 * (q.starts or (1.0,))[0] for q in model.parameters if q.name in WITH}
     assert on
