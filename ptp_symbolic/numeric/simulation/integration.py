@@ -5,6 +5,7 @@ Preallocated arrays of a run, for its work and its results: kernels allocate not
 Integrate smooth motion by steps of order 8: preallocate, run, and return the results.
 """
 
+import threading
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from types import ModuleType
@@ -32,7 +33,12 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     Tangents,
     Watch,
 )
-from ptp_symbolic.numeric.simulation.methods.exponential_step import LENGTHS, new_propagator
+from ptp_symbolic.numeric.simulation.methods.exponential_step import (
+    LENGTHS,
+    Propagator,
+    forget,
+    new_propagator,
+)
 from ptp_symbolic.numeric.simulation.methods.rosenbrock import STAGES
 from ptp_symbolic.numeric.simulation.methods.steps import ROSENBROCK, RUNGE_KUTTA
 from ptp_symbolic.numeric.simulation.sampling import loop_address, new_sampling
@@ -150,6 +156,16 @@ def new_tangents(
         z((n, nu)),
         z((n, parameters)),
     )
+
+
+class _OfThread(threading.local):
+    """Propagators by their size, and how many."""
+
+    def __init__(self) -> None:
+        self.propagators: dict[tuple[int, int, int, int], list[Propagator]] = {}
+
+
+_OF_THREAD = _OfThread()
 
 
 def is_smooth(model: Model) -> bool:
@@ -494,12 +510,19 @@ def _integrate(
 def _propagators(
     model: Model, p: FloatArray, modes: int, moving: int, n: int
 ) -> tuple[tuple[Any, ...], ...]:
-    """Preallocated propagators [LENGTHS], as many different ones as lengths of steps follow one
-    another: one more than inputs are late at p [np], each by its own delay.
+    """Propagators [LENGTHS] of which nothing is known yet, as many different ones as lengths of
+    steps follow one another: one more than inputs are late at p [np], each by its own delay. A
+    thread makes those of a size once, a tenth of the time of a short simulation.
     """
     late = {delay for delay in delays_of(model, p).tolist() if delay > 0.0}
-    made = [tuple(new_propagator(modes, moving, n)) for _ in range(min(1 + len(late), LENGTHS))]
-    return tuple(made[k % len(made)] for k in range(LENGTHS))
+    key = modes, moving, n, min(1 + len(late), LENGTHS)
+    made = _OF_THREAD.propagators.get(key)
+    if made is None:
+        made = [new_propagator(modes, moving, n) for _ in range(key[3])]
+        _OF_THREAD.propagators[key] = made
+    for propagator in made:
+        forget(propagator)
+    return tuple(tuple(made[k % len(made)]) for k in range(LENGTHS))
 
 
 def refuse_start(model: Model, x: FloatArray, u: FloatArray, p: FloatArray, watch: Watch) -> None:

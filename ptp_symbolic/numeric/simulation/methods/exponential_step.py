@@ -205,7 +205,7 @@ class Propagator(NamedTuple):
 def new_propagator(modes: int, moving: int, n: int) -> Propagator:
     """Preallocated propagator of n states, the first `moving` of which are not set by samplers."""
     z, w = np.zeros, padded(n)
-    arrays = [z(modes), np.array([0.0, 0.0, 0.0, 1.0, 0.0, -np.inf])]
+    arrays = [z(modes), z(6)]
     arrays += [z((NODES, moving, padded(moving))) for _ in range(3)]
     arrays += [z((NODES, moving, moving))]
     arrays += [z((moving, moving)) for _ in range(8)]
@@ -213,6 +213,11 @@ def new_propagator(modes: int, moving: int, n: int) -> Propagator:
     arrays += [z(size) for size in (w, w, w, NODES)]
     arrays += [z(NODES, dtype=np.int64)]
     return Propagator(*arrays)
+
+
+def forget(propagator: Propagator) -> None:
+    """Let a propagator begin anew."""
+    propagator.clock[:] = 0.0, 0.0, 0.0, 1.0, 0.0, -np.inf
 
 
 @kernel
