@@ -37,7 +37,8 @@ from ptp_symbolic.numeric.simulation.kernels.calls import (
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-WORTH = 2_000_000  # samples or steps: as long as its functions take to compile, by a fifth or so
+WORTH = 1_000_000  # steps; they take as long as functions to compile, a few seconds
+MOST = 0.8  # of these, for which functions are made
 OF_LEDGER = ("energy",)  # which no simulation of a fit calls: it is not compiled
 BY_PARAMETER = ("fp", "gp", "yp")  # derivatives, a column for each parameter
 
@@ -84,13 +85,31 @@ class Specialised:
         return Functions(addresses(self.module, tangents), output_addresses(self.module))
 
     def note(self, unneeded: int, samples: int) -> None:
-        """Note that so much was simulated, and specialise where that pays."""
+        """Note that so much was simulated. Where it was long enough by the module's own functions,
+        others are made that leave out what none of those needed that most of it was for; or the
+        first of these, if that would leave out less than half of what there is.
+        """
+        if unneeded.bit_count() < len(self.vanishes) or any(
+            known | unneeded == unneeded for known in list(self.known)
+        ):
+            return
         with self._lock:
-            before = self.simulated[unneeded]
             self.simulated[unneeded] += samples
-        if before < WORTH <= before + samples and (found := self._emitted_without(unneeded)):
-            motion = compiled_addresses(found, SIGNATURES | IMPACT_SIGNATURES, OF_LEDGER)
-            self.known[unneeded] = Functions(motion, output_addresses(found))
+            whole = self.simulated.total()
+            if whole < WORTH:
+                return
+            found = shared = self.simulated.most_common(1)[0][0]
+            covered = 0
+            for each, own in self.simulated.most_common():
+                if covered >= MOST * whole:
+                    break
+                covered, shared = covered + own, shared & each
+            if shared.bit_count() >= len(self.vanishes):
+                found = shared
+            self.simulated.clear()
+        if module := self._emitted_without(found):
+            motion = compiled_addresses(module, SIGNATURES | IMPACT_SIGNATURES, OF_LEDGER)
+            self.known[found] = Functions(motion, output_addresses(module))
 
     def _emitted_without(self, unneeded: int) -> ModuleType | None:
         """The module without what is unneeded; None where it is none of a user, or no more can be
