@@ -23,8 +23,9 @@ from threadpoolctl import threadpool_limits
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
-from ptp_symbolic.numeric.identify.evaluate import Tolerance, start_state
+from ptp_symbolic.numeric.identify.evaluate import Tolerance
 from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.identify.start import start_state
 from ptp_symbolic.numeric.identify.weak_form import weak_average
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.inputs import delayed, delays_of

@@ -17,7 +17,7 @@ from ptp_symbolic.numeric.data import Log
 from ptp_symbolic.numeric.diagnose.responses import stacked_jacobian
 from ptp_symbolic.numeric.identify.constants import SEED
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, limits, slopes, to_search
-from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, put_into_gap
+from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.intervals import project_out
 from ptp_symbolic.numeric.identify.least_squares import (
@@ -30,6 +30,7 @@ from ptp_symbolic.numeric.identify.least_squares import (
 )
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
+from ptp_symbolic.numeric.identify.start import put_into_gap
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.inputs import table
 from ptp_symbolic.numeric.simulation.run import SimulationError, simulate, start_of
@@ -426,7 +427,7 @@ def _started(machine: Contender, conditions: Conditions, place: float) -> dict[s
     model, p = machine.model, machine.model.parameter_vector(dict(machine.values))
     x, rest = start_of(model, conditions.initial), np.zeros(len(model.input_names))
     for contact in range(len(model.module.CONTACT_ANGLES)):
-        half, _ = put_into_gap(model, contact, x, np.zeros((len(x), 0)), rest, p, NO_COLUMNS)
+        half = put_into_gap(model, contact, x, np.zeros((len(x), 0)), rest, p, NO_COLUMNS)
         x[model.module.CONTACT_ANGLES[contact][0]] += place * half
     return dict(zip(model.state_names, x.tolist(), strict=True))
 

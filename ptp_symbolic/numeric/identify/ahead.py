@@ -4,7 +4,7 @@ Each module lists them with the types that they are called with, in AHEAD: numba
 one after the other where a fit first calls them.
 """
 
-from ptp_symbolic.numeric.identify import along_motion, evaluate, weak_form
+from ptp_symbolic.numeric.identify import along_motion, evaluate, start, weak_form
 from ptp_symbolic.numeric.simulation.ahead import begin, note_compiled
 
 FIT = "fit"
@@ -18,6 +18,6 @@ def begin_fit() -> None:
 
 def compile_all() -> None:
     """Compile them, or find them compiled."""
-    for function, types in (*weak_form.AHEAD, *evaluate.AHEAD, *along_motion.AHEAD):
+    for function, types in (*weak_form.AHEAD, *start.AHEAD, *evaluate.AHEAD, *along_motion.AHEAD):
         function.compile(types)
     note_compiled(FIT)

@@ -41,7 +41,6 @@ from ptp_symbolic.numeric.identify.evaluate import (
     Tolerance,
     mean_squares,
     residual_of,
-    start_state,
 )
 from ptp_symbolic.numeric.identify.evidence import Deferred, is_recording, key_of, recorded, stored
 from ptp_symbolic.numeric.identify.least_squares import (
@@ -58,6 +57,7 @@ from ptp_symbolic.numeric.identify.least_squares import (
     simulations_of,
 )
 from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.identify.start import start_state
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.lanes import in_portions
 

@@ -30,11 +30,7 @@ from ptp_symbolic.numeric.identify.constants import (
     START_SPAN,
     TUNING,
 )
-from ptp_symbolic.numeric.identify.evaluate import (
-    Tolerance,
-    evaluate,
-    start_state,
-)
+from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate
 from ptp_symbolic.numeric.identify.evidence import derived, is_recording, recorded
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.intervals import project_out, with_finite_differences
@@ -43,6 +39,7 @@ from ptp_symbolic.numeric.identify.least_squares import (
 )
 from ptp_symbolic.numeric.identify.noise import white_noise
 from ptp_symbolic.numeric.identify.run import WINDOW, Around, Run, thinned, with_inputs, with_start
+from ptp_symbolic.numeric.identify.start import start_state
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.inputs import part_of_sampled
 from ptp_symbolic.numeric.simulation.lanes import in_portions

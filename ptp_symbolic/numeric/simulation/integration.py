@@ -312,8 +312,13 @@ def geared_weights(model: Model) -> FloatArray:
     An error of a rate (rad/s, m/s) counts a hundredth and any other, such as a current, a
     thousandth: it decays before it reaches an angle or a position.
     """
+    return _geared_weights(model.module).copy()
+
+
+@lru_cache(maxsize=256)
+def _geared_weights(module: ModuleType) -> FloatArray:
     factors = {"rad": 1.0, "m": 1.0, "rad/s": 100.0, "m/s": 100.0}
-    return np.array([factors.get(unit, 1000.0) for unit in model.module.STATE_UNITS])
+    return np.array([factors.get(unit, 1000.0) for unit in module.STATE_UNITS])
 
 
 def integrate(
