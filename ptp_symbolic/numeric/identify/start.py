@@ -45,7 +45,8 @@ CALLED = {
     "guards": SIGNATURES["guards"],
 }
 OUTPUTS, OUTPUT_JACOBIAN, INITIAL_MODES, MODE_DERIVATIVE, LINEARIZE, GUARDS = range(len(CALLED))
-SIGNALS, MODES, ALL_GUARDS = range(3)
+SIZES = ("signals", "modes", "guards")
+SIGNALS, MODES, ALL_GUARDS = range(len(SIZES))
 
 
 class Beginning(NamedTuple):

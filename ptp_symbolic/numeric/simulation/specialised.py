@@ -10,9 +10,10 @@ difference which of the two a simulation takes.
 import ast
 import hashlib
 import math
+import operator
 import threading
 from collections import Counter
-from collections.abc import Mapping, Set
+from collections.abc import Callable, Mapping, Set
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from pathlib import Path
@@ -40,6 +41,20 @@ IntArray = NDArray[np.int64]
 WORTH = 1_000_000  # steps; they take as long as functions to compile, a few seconds
 MOST = 0.8  # of these, for which functions are made
 OF_LEDGER = ("energy",)  # which no simulation of a fit calls: it is not compiled
+OPERATIONS: dict[type[ast.AST], Callable[..., Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: operator.pow,
+    ast.USub: operator.neg,
+    ast.Gt: operator.gt,
+    ast.GtE: operator.ge,
+    ast.Lt: operator.lt,
+    ast.LtE: operator.le,
+    ast.Eq: operator.eq,
+    ast.NotEq: operator.ne,
+}
 BY_PARAMETER = ("fp", "gp", "yp")  # derivatives, a column for each parameter
 
 
@@ -295,11 +310,21 @@ class _Fold(ast.NodeTransformer):
 
 def _computed(node: Any, operands: list[ast.expr]) -> ast.expr:
     """The value of an expression of numbers; the expression where it is none, or has none."""
-    if any(_number(one) is None for one in operands):
+    values = [_number(one) for one in operands]
+    if None in values:
         return node
-    source = ast.unparse(ast.fix_missing_locations(node))
     try:
-        value = eval(source, {"math": math, "__builtins__": {"abs": abs, "min": min, "max": max}})
-    except (ArithmeticError, ValueError, TypeError, NameError):
+        value = _operation(node)(*values)
+    except (ArithmeticError, KeyError, TypeError, ValueError):
         return node
     return ast.Constant(value) if isinstance(value, bool | int | float) else node
+
+
+def _operation(node: ast.expr) -> Callable[..., Any]:
+    """What an expression does with its operands. Raises KeyError where it is none of OPERATIONS."""
+    match node:
+        case ast.Call(func=ast.Attribute(value=ast.Name(id="math"), attr=name)):
+            return getattr(math, name)
+        case ast.Compare(ops=[one]) | ast.BinOp(op=one) | ast.UnaryOp(op=one):
+            return OPERATIONS[type(one)]
+    raise KeyError(type(node).__name__)
