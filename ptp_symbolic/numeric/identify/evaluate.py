@@ -194,7 +194,7 @@ def evaluate(
         functions=functions.motion,
     )
     run.work.add(max(len(run.time), found.steps), tangents)
-    if is_asked:  # what a fit simulates without derivatives needs no functions of its own
+    if is_asked:  # differences go by the functions of the fit that asks for them
         lean.note(unneeded, found.steps)
     r, j = np.zeros(run.size), np.zeros((run.size, found.s.shape[2]))
     failed = None

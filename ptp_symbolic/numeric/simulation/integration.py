@@ -520,11 +520,10 @@ def _propagators(
     thread makes those of a size once, a tenth of the time of a short simulation.
     """
     late = {delay for delay in delays_of(model, p).tolist() if delay > 0.0}
-    key = modes, moving, n, min(1 + len(late), LENGTHS)
-    made = _OF_THREAD.propagators.get(key)
-    if made is None:
-        made = [new_propagator(modes, moving, n) for _ in range(key[3])]
-        _OF_THREAD.propagators[key] = made
+    count = min(1 + len(late), LENGTHS)
+    made = _OF_THREAD.propagators.setdefault((modes, moving, n, count), [])
+    while len(made) < count:
+        made.append(new_propagator(modes, moving, n))
     for propagator in made:
         forget(propagator)
     return tuple(tuple(made[k % len(made)]) for k in range(LENGTHS))

@@ -3,8 +3,8 @@
 A model with every candidate effect computes all of them, most of which vanish in any one fit. Its
 module is written anew here with these parameters as constants: what they multiply goes, and what
 nothing uses then (partial evaluation: Jones, Gomard and Sestoft, 1993). States, inputs, parameters
-and modes stay where they are, and results are the same to the last bit, so that it makes no
-difference which of the two a simulation takes.
+and modes stay where they are, and where all numbers are finite results are the same to the last
+bit, but for the sign of a zero: a simulation may take either of the two.
 """
 
 import ast
@@ -74,7 +74,7 @@ class Specialised:
     module: ModuleType
     known: dict[int, Functions] = field(default_factory=dict)
     simulated: Counter[int] = field(default_factory=Counter)
-    _last: tuple[bytes, bytes, int] = (b"", b"", 0)
+    _last: tuple[tuple[bytes, bytes], int] = ((b"", b""), 0)
     _lock: threading.Lock = field(default_factory=threading.Lock, repr=False)
 
     @cached_property
@@ -88,14 +88,15 @@ class Specialised:
         """A bit for every parameter that vanishes at p [np], and one for every derivative by a
         parameter, that is by none of the `columns` [nc] by which derivatives may be asked for.
         """
-        asked, given, found = self._last  # the same for all runs of a fit
-        if (p.tobytes(), columns.tobytes()) == (asked, given):
+        key = p.tobytes(), columns.tobytes()
+        last, found = self._last  # the same for all runs of an iteration
+        if key == last:
             return found
         bits = np.ones((2, len(p)), dtype=np.bool_)
         bits[:, columns] = False
         bits[0] &= p == self.vanishes
         found = int.from_bytes(np.packbits(bits).tobytes(), "big")
-        self._last = p.tobytes(), columns.tobytes(), found
+        self._last = key, found
         return found
 
     def without(self, unneeded: int, tangents: bool) -> Functions:
@@ -106,9 +107,9 @@ class Specialised:
         return Functions(addresses(self.module, tangents), output_addresses(self.module))
 
     def note(self, unneeded: int, samples: int) -> None:
-        """Note that so much was simulated. Where it was long enough by the module's own functions,
-        others are made that leave out what none of those needed that most of it was for; or the
-        first of these, if that would leave out less than half of what there is.
+        """Note that so much was simulated. Once the module's own functions have been at work for
+        long enough, others are made that serve most of what they were asked for; where these would
+        leave out less than half, they serve what was asked for most.
         """
         if unneeded.bit_count() < len(self.vanishes) or any(
             known | unneeded == unneeded for known in list(self.known)
